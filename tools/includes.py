@@ -61,7 +61,7 @@ BROUGHT = {"exception": {"stdexcept"}, "string_view": {"string"},
            "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include",
-                                        "kernel", "kernel/src", "lab", "lab/carom",
+                                        "interface/include", "kernel", "kernel/src", "lab", "lab/carom",
                                         "engine/src", "render/src", "capi/src", "tools/carom", "tests")]
 INCLUDE = re.compile(r'^#include [<"]([^>"]+)[>"]', re.MULTILINE)
 NO_CODE = re.compile(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"')

@@ -8,17 +8,25 @@ that page.
     tools/renew_formats.py [BUILD_FOLDER]
 """
 import pathlib
+import re
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
 PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json",
-         "record-schema": "record.schema.json", "scene-format": "scene_format.md"}
+         "record-schema": "record.schema.json", "scene-format": "scene_format.md", "types": "types.md"}
+TYPES = ROOT / "python/carom/_types.py"
+
+
+
+def printed_by(what):
+    return subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
+
 
 for what, name in PAGES.items():
     path = ROOT / "docs/reference" / name
-    printed = subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
+    printed = printed_by(what)
     if printed == path.read_text():
         continue
     # Otherwise a change that is not built in yet would be lost.
@@ -26,3 +34,10 @@ for what, name in PAGES.items():
         sys.exit(
             f"renew_formats: {path.relative_to(ROOT)} is newer than {PROGRAM}; build carom_program first")
     path.write_text(printed)
+
+# Between the marks; the methods of the classes follow them.
+text = TYPES.read_text()
+for block in re.finditer(r"(?ms)^# begin (\w+)\n.*?^# end \1\n", printed_by("types-python")):
+    present = re.search(rf"(?ms)^# begin {block[1]}\n.*?^# end {block[1]}\n", text)
+    text = text.replace(present[0], block[0]) if present else f"{text}\n\n{block[0]}"
+TYPES.write_text(text)

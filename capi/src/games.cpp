@@ -21,26 +21,64 @@ namespace {
 
 namespace games = carom::games;
 
-static_assert(CAROM_FOUR_BALL == static_cast<int>(games::Game::kFourBall));
 static_assert(CAROM_IN_THE_D == static_cast<int>(games::InHand::kD));
 
 /// A value of an enumeration. @throws BadArgument
-template <class E>
-E value_of(const char* what, int32_t value) {
-    const auto count = static_cast<int32_t>(carom::games::names_of(E{}).size());
-    if (value < 0 || value >= count)
+std::size_t checked(const char* what, int32_t value, std::size_t count) {
+    if (value < 0 || static_cast<std::size_t>(value) >= count)
         throw BadArgument(std::string(what) + " is " + std::to_string(value) + "; expected 0 to " +
                           std::to_string(count - 1));
-    return static_cast<E>(value);
+    return static_cast<std::size_t>(value);
+}
+template <class E>
+E value_of(const char* what, int32_t value) {
+    return static_cast<E>(checked(what, value, games::names_of(E{}).size()));
+}
+games::Game game_of(int32_t number) {
+    const auto all = games::all_of(games::Game{});
+    return all[checked("game", number, all.size())];
 }
 
-// The options of the rules share `game`, because the size of the struct is promised.
-constexpr int kGameBits = 8, kGameMask = (1 << kGameBits) - 1;
+// The options of the rules share `game`, two bits each, because the size of the struct is promised.
+constexpr int kGameBits = 8, kGameMask = (1 << kGameBits) - 1, kOptionBits = 2, kOptionMask = 3;
+
+/// @throws BadArgument for bits that are no options of the game
+std::vector<std::string> unpacked(games::Game game, std::uint32_t bits) {
+    std::vector<std::string> rules;
+    for (const games::RuleOption& option : games::info_of(game).options) {
+        const std::size_t value = bits & kOptionMask;
+        bits = value < option.values.size() ? bits >> kOptionBits : ~0U;
+        if (bits == ~0U) break;
+        if (value > 0) rules.push_back(option.key + "=" + option.values[value]);
+    }
+    if (bits != 0)
+        throw BadArgument(std::string("the state has rule options of another game, not of ") + name(game) +
+                          "; begin a new game and set them");
+    return rules;
+}
+
+std::uint32_t number_of(games::Game game) {
+    const auto all = games::all_of(game);
+    return static_cast<std::uint32_t>(std::find(all.begin(), all.end(), game) - all.begin());
+}
+
+std::uint32_t packed(const games::State& state) {
+    std::uint32_t bits = 0;
+    int shift = 0;
+    for (const games::RuleOption& option : games::info_of(state.game).options) {
+        for (std::uint32_t value = 1; value < option.values.size(); ++value)
+            if (std::find(state.rules.begin(), state.rules.end(), option.key + "=" + option.values[value]) !=
+                state.rules.end())
+                bits |= value << shift;
+        shift += kOptionBits;
+    }
+    return bits;
+}
 
 games::State state_of(const carom_game_state& s) {
     games::State state;
-    state.game = value_of<games::Game>("game", s.game & kGameMask);
-    state.rules = static_cast<std::uint32_t>(s.game) >> kGameBits;
+    state.game = game_of(s.game & kGameMask);
+    state.rules = unpacked(state.game, static_cast<std::uint32_t>(s.game) >> kGameBits);
     state.turn = s.turn;
     state.opening = s.opening != 0;
     state.in_hand = value_of<games::InHand>("in_hand", s.in_hand);
@@ -58,7 +96,7 @@ games::State state_of(const carom_game_state& s) {
 
 carom_game_state state_of(const games::State& s) {
     carom_game_state state{};
-    state.game = static_cast<int32_t>(static_cast<std::uint32_t>(s.game) | s.rules << kGameBits);
+    state.game = static_cast<int32_t>(number_of(s.game) | packed(s) << kGameBits);
     state.turn = s.turn;
     state.opening = s.opening ? 1 : 0;
     state.in_hand = static_cast<int32_t>(s.in_hand);
@@ -107,7 +145,7 @@ void fill(const std::vector<std::string>& balls, const games::Legal& legal, uint
 carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state) {
     return guarded([&] {
         need({state});
-        const auto of = value_of<games::Game>("game", static_cast<int32_t>(game));
+        const auto of = game_of(static_cast<int32_t>(game));
         *state = asked([&] { return state_of(games::new_game(of, first, target)); });
     });
 }
@@ -156,7 +194,6 @@ carom_status carom_judge(const carom_game_state* state, const carom_record* reco
         if (call != nullptr)
             said = {text_of(call->ball), text_of(call->pocket), call->safety != 0, call->push_out != 0};
         const games::State before = state_of(*state);
-        v.game = before.game;
         v.record = record->record.hash();
         v.verdict = asked([&] { return games::judge(before, record->record, said); });
     });
@@ -171,12 +208,13 @@ size_t carom_verdict_foul_count(const carom_verdict* verdict) {
 }
 
 const char* carom_verdict_foul(const carom_verdict* verdict, size_t index) {
-    return index < carom_verdict_foul_count(verdict) ? carom::name(verdict->verdict.fouls[index]) : nullptr;
+    return index < carom_verdict_foul_count(verdict) ? carom::name(verdict->verdict.fouls[index].foul)
+                                                     : nullptr;
 }
 
 const char* carom_verdict_rule(const carom_verdict* verdict, size_t index) {
     if (index >= carom_verdict_foul_count(verdict)) return nullptr;
-    return games::rule_of(verdict->game, verdict->verdict.fouls[index]);
+    return verdict->verdict.fouls[index].rule.c_str();
 }
 
 int carom_verdict_points(const carom_verdict* verdict) {

@@ -20,7 +20,6 @@ struct carom_record {
 
 struct carom_verdict {
     carom::games::Verdict verdict;
-    carom::games::Game game;
     std::string record;  // hash of the record that was judged
 };
 

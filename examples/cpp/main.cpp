@@ -16,7 +16,7 @@ carom::BallStart ball_at(const std::string& id, double x, double y, double radiu
 
 carom::Scene cut_shot() {
     carom::Scene scene;
-    scene.file = "cut shot";  // stands in messages
+    scene.file = "cut shot";  // the name in messages
     scene.table = carom::make_table("nine_foot");
     carom::use_balls(scene, "pool");  // and the model of their cushions
     scene.ball = {ball_at("cue", 0.635, 0.60, scene.balls.R), ball_at("1", 0.65, 1.40, scene.balls.R)};

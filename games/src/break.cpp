@@ -27,9 +27,9 @@ struct BreakGame {
     Game game;
 };
 // In the order of kBreakGames.
-constexpr BreakGame kGames[] = {{RackGame::kNineBall, 9, Game::kNineBall},
-                                {RackGame::kTenBall, {}, Game::kTenBall},
-                                {RackGame::kEightBall, {}, Game::kEightBall}};
+constexpr BreakGame kGames[] = {{RackGame::kNineBall, 9, &kNineBall},
+                                {RackGame::kTenBall, {}, &kTenBall},
+                                {RackGame::kEightBall, {}, &kEightBall}};
 static_assert(std::size(kGames) == kBreakGames.size());
 
 const BreakGame& game_of(const std::string& name) {

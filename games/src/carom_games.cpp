@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -23,10 +22,8 @@ struct CaromGame {
     int cushions;
     bool all_back;  ///< whether all balls are spotted if one must be
 };
-constexpr CaromGame kCaromGames[] = {{Game::kThreeCushion, 3, false},
-                                     {Game::kStraightRail, 0, true},
-                                     {Game::kOneCushion, 1, true},
-                                     {Game::kFourBall, 0, false}};
+constexpr CaromGame kCaromGames[] = {
+    {&kThreeCushion, 3, false}, {&kStraightRail, 0, true}, {&kOneCushion, 1, true}, {&kFourBall, 0, false}};
 
 const CaromGame& carom_game(Game game) {
     return *std::find_if(std::begin(kCaromGames), std::end(kCaromGames),
@@ -44,9 +41,9 @@ Vec2 own_spot(const Table& table, Game game, const std::string& ball, int shoote
     const bool own = ball == own_ball(shooter);
     if (ball == "red1") return head_spot(table);
     if (is_red(ball)) return foot_spot(table);
-    if (game == Game::kThreeCushion) return own ? head_spot(table) : center_spot(table);
+    if (game == &kThreeCushion) return own ? head_spot(table) : center_spot(table);
     if (own) return opening_spot(table);
-    return game == Game::kFourBall ? center_spot(table) : head_spot(table);
+    return game == &kFourBall ? center_spot(table) : head_spot(table);
 }
 
 /// A ball whose spot is occupied goes to the spot of the ball in the way, or as near as possible to its own.
@@ -102,7 +99,7 @@ bool plays_into_touching(const Facts& facts) {
 
 /// Whether the other player's ball counts as a red.
 bool opponents_counts(const State& state) {
-    return state.game != Game::kFourBall || rule(state, "opponents_ball") == "counts";
+    return state.game != &kFourBall || rule(state, "opponents_ball") == "counts";
 }
 
 /// Whether the cue ball met two balls that count, the second one after the game's cushions.
@@ -139,8 +136,8 @@ std::vector<Foul> carom_fouls(const Facts& facts) {
     const bool first_is_red = std::any_of(facts.shot.first_hits.begin(), facts.shot.first_hits.end(),
                                           [&](int ball) { return is_red(facts.id(ball)); });
     if (state.opening && hits && !first_is_red) fouls.push_back(Foul::kOpeningNotRed);
-    if (state.game != Game::kFourBall && plays_into_touching(facts)) fouls.push_back(Foul::kIntoTouchingBall);
-    if (state.game != Game::kFourBall) return fouls;
+    if (state.game != &kFourBall && plays_into_touching(facts)) fouls.push_back(Foul::kIntoTouchingBall);
+    if (state.game != &kFourBall) return fouls;
     if (!hits) fouls.push_back(Foul::kNoBallHit);
     const bool opponents =
         std::any_of(facts.shot.touches.begin(), facts.shot.touches.end(), [&](const Touch& touch) {
@@ -149,8 +146,6 @@ std::vector<Foul> carom_fouls(const Facts& facts) {
     if (opponents && !opponents_counts(state)) fouls.push_back(Foul::kOpponentsBall);
     return fouls;
 }
-
-}  // namespace
 
 Legal legal_carom(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
@@ -165,7 +160,7 @@ Verdict judge_carom(const Facts& facts) {
     const State& state = facts.state;
     std::vector<Foul> fouls = carom_fouls(facts);
     const bool point = fouls.empty() && made_carom(facts);
-    const bool loses = !fouls.empty() && state.game == Game::kFourBall;
+    const bool loses = !fouls.empty() && state.game == &kFourBall;
     State next = after(state, point);
     if (loses) --next.points[static_cast<std::size_t>(state.turn)];
     const auto back = [&](std::vector<std::string> balls) {
@@ -174,9 +169,9 @@ Verdict judge_carom(const Facts& facts) {
     };
     std::vector<std::string> off;
     for (const int ball : facts.shot.out) off.push_back(facts.id(ball));
-    Verdict verdict = one_way(std::move(fouls), {Decision::kPlayOn, next, back(off)});
+    Verdict verdict = one_way(fouls, {Decision::kPlayOn, next, back(off)});
     verdict.points = point ? 1 : loses ? -1 : 0;
-    const std::vector<std::string> against = off.empty() && !next.over && state.game != Game::kFourBall
+    const std::vector<std::string> against = off.empty() && !next.over && state.game != &kFourBall
                                                  ? touching(facts, next.turn)
                                                  : std::vector<std::string>();
     if (!against.empty()) {
@@ -213,9 +208,82 @@ Verdict judge_sum_to_three(const Facts& facts) {
         next.respots.push_back(
             {facts.id(ball), spot_on_long_string(table, spot, facts.record.size(ball).R, others)});
     }
-    Verdict verdict = one_way(std::move(fouls), next);
+    Verdict verdict = one_way(fouls, next);
     verdict.points = point ? 1 : 0;
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+namespace {
+
+constexpr FoulRule kCaromFouls[] = {{Foul::kBallOff, "UMB, fouls"},
+                                    {Foul::kWrongCueBall, "UMB, fouls"},
+                                    {Foul::kOpeningNotRed, "UMB, starting position"},
+                                    {Foul::kIntoTouchingBall, "UMB, fouls"}};
+constexpr FoulRule kFourBallFouls[] = {{Foul::kNoBallHit, "four-ball, no ball hit"},
+                                       {Foul::kBallOff, "four-ball, ball off"},
+                                       {Foul::kWrongCueBall, "four-ball, cue balls"},
+                                       {Foul::kOpeningNotRed, "four-ball, starting position"},
+                                       {Foul::kOpponentsBall, "four-ball, opponent's ball"}};
+
+GameRules umb_game(const char* name, const char* title, const char* chapter) {
+    return {
+        .info = {.name = name,
+                 .title = title,
+                 .book = std::string("Union Mondiale de Billard, World rules of carom billiard") + chapter,
+                 .usual_target = 15,
+                 .balls = 2,
+                 .table = "carom",
+                 .start = detail::start_of(
+                     "", {{"white", 0.6289, 0.25}, {"yellow", 0.5, 0.25}, {"red", 0.5, 0.75}}, "white", 4,
+                     98.5)},
+        .legal = detail::legal_carom,
+        .judge = detail::judge_carom,
+        .balls = {"white", "yellow", "red"},
+        .fouls = kCaromFouls,
+        .struck = GameRules::Struck::kOwn};
+}
+
+}  // namespace
+
+const GameRules kThreeCushion = umb_game("three_cushion", "three-cushion", "");
+const GameRules kStraightRail = umb_game("straight_rail", "straight rail", ": free game");
+const GameRules kOneCushion = umb_game("one_cushion", "one-cushion", ": one cushion");
+const GameRules kFourBall = {
+    .info =
+        {.name = "four_ball",
+         .title = "four-ball",
+         .book = "the Korean game of Wikipedia, Four-ball billiards, read in November 2026",
+         .usual_target = 15,
+         .balls = 3,
+         .table = "carom",
+         .start = detail::start_of("game = \"four_ball\"", {}, "white", 3, 85),
+         .options = {{&kFourBall,
+                      "opponents_ball",
+                      {"foul", "counts"},
+                      "Effect of hitting the other player's cue ball: a foul, as in Korea, or the same as "
+                      "hitting a red, as in Japan."}}},
+    .legal = detail::legal_carom,
+    .judge = detail::judge_carom,
+    .balls = {"white", "yellow", "red1", "red2"},
+    .fouls = kFourBallFouls,
+    .struck = GameRules::Struck::kOwn,
+    .below_zero = true};
+const GameRules kSumToThree = {
+    .info = {.name = "sum_to_three",
+             .title = "sum to three",
+             .book = "pooltool 0.6.0 and LightZero's zoo",
+             .usual_target = 15,
+             .balls = 1,
+             .table = "carom",
+             .start = detail::start_of("", {{"cue", 0.6, 0.25}, {"red", 0.5, 0.7}}, "cue", 3, 98)},
+    .legal = detail::legal_sum_to_three,
+    .judge = detail::judge_sum_to_three,
+    .balls = {"cue"},
+    .fouls = kCaromFouls};
+
+}  // namespace carom::games

@@ -1,7 +1,6 @@
 // Eight-ball by the World Pool-Billiard Association: rule 3, with 1.4 to 1.6 and 6.
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "facts.h"
@@ -75,9 +74,11 @@ void add_fouls(const Facts& facts, const std::vector<std::string>& first, bool n
 }
 
 Verdict judge_break(const Facts& facts) {
-    Verdict verdict;
+    std::vector<Foul> fouls;
     // 3.3 (b): any ball may be hit first.
-    add_fouls(facts, facts.ids(), true, verdict.fouls);
+    add_fouls(facts, facts.ids(), true, fouls);
+    Verdict verdict;
+    verdict.fouls = called(fouls);
     const bool illegal = !facts.any_object_fell() && facts.objects_driven() < kDrivenOnBreak;
     State next = facts.state;
     next.opening = false;
@@ -119,8 +120,6 @@ std::string made(const Facts& facts, const std::vector<std::string>& own) {
     return "";
 }
 
-}  // namespace
-
 Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
     legal.cue_balls = {"cue"};
@@ -145,11 +144,10 @@ Verdict judge_eight_ball(const Facts& facts) {
     next.in_hand = InHand::kNo;
     if (facts.gone(kEight)) {
         const int winner = wins(facts, fouls, own) ? state.turn : 1 - state.turn;
-        return one_way(std::move(fouls), {Decision::kPlayOn, won_by(next, winner), {}});
+        return one_way(fouls, {Decision::kPlayOn, won_by(next, winner), {}});
     }
     const InHand where = rule(state, "in_hand") == "anywhere" ? InHand::kAnywhere : InHand::kHeadString;
-    if (!fouls.empty())
-        return one_way(std::move(fouls), {Decision::kTakeInHand, other_players(next, where), {}});
+    if (!fouls.empty()) return one_way(fouls, {Decision::kTakeInHand, other_players(next, where), {}});
     const std::string ball = made(facts, own);
     if (ball.empty()) return one_way({}, {Decision::kPlayOn, other_players(next, InHand::kNo), {}});
     // 3.4: the first ball that counts decides the groups.
@@ -163,4 +161,43 @@ Verdict judge_eight_ball(const Facts& facts) {
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+const GameRules kEightBall = {
+    .info =
+        {.name = "eight_ball",
+         .title = "eight-ball",
+         .book = "World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 3",
+         .calls = "ball and pocket, or a safety",
+         .is_scored = false,
+         .has_groups = true,
+         .has_safety = true,
+         .start = detail::start_of("game = \"eight_ball\"", {{"cue", 0.45, 0.22}}, "cue", 8, 90),
+         .options = {{&kEightBall,
+                      "call",
+                      {"all", "eight", "none"},
+                      "Shots to call: all, only the one at the eight, or none."},
+                     {&kEightBall,
+                      "eight_on_break",
+                      {"respot", "wins", "rerack"},
+                      "Effect of an eight that falls on the break: a respot or rerack, as the next player "
+                      "chooses; a win, or a loss after a foul; or always a rerack."},
+                     {&kEightBall,
+                      "in_hand",
+                      {"anywhere", "behind_line"},
+                      "Area of the cue ball in hand after a foul: anywhere, or behind the head string."},
+                     {&kEightBall,
+                      "jump",
+                      {"fair", "foul"},
+                      "Whether the cue ball may pass over a ball before it hits one."}}},
+    .legal = detail::legal_eight_ball,
+    .judge = detail::judge_eight_ball,
+    .start = InHand::kHeadString,
+    .balls = {"cue", "8"},
+    .fouls = kPoolFouls,
+    .break_rule = "WPA 3.3"};
+
+}  // namespace carom::games

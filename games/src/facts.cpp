@@ -1,5 +1,7 @@
 #include "facts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -75,9 +77,25 @@ std::vector<Respot> on_foot_spot(const Facts& facts, const std::vector<std::stri
     return respots;
 }
 
-Verdict one_way(std::vector<Foul> fouls, const Option& option) {
+std::string start_of(std::string_view rack, const std::vector<Placed>& balls, std::string_view struck,
+                     double speed, double aim_deg) {
+    std::string text;
+    if (!rack.empty()) text = fmt::format("[rack]\n{}\ngap = 1e-4\nseed = SEED\n", rack);
+    for (const Placed& ball : balls)
+        text += fmt::format("[[ball]]\nid = \"{}\"\nposition = [{}w, {}l]\n", ball.id, ball.x, ball.y);
+    return text + fmt::format("[cue]\nball = \"{}\"\nspeed = {}\naim_deg = {}\n", struck, speed, aim_deg);
+}
+
+std::vector<CalledFoul> called(const std::vector<Foul>& fouls) {
+    std::vector<CalledFoul> list;
+    list.reserve(fouls.size());
+    for (const Foul foul : fouls) list.push_back({foul});
+    return list;
+}
+
+Verdict one_way(const std::vector<Foul>& fouls, const Option& option) {
     Verdict verdict;
-    verdict.fouls = std::move(fouls);
+    verdict.fouls = called(fouls);
     verdict.options = {option};
     return verdict;
 }
@@ -204,3 +222,18 @@ void Facts::add_pool_fouls(std::vector<Foul>& fouls, const std::vector<std::stri
 }
 
 }  // namespace carom::games::detail
+
+namespace carom::games {
+namespace {
+
+constexpr FoulRule kOfPool[] = {{Foul::kCueBallPocketed, "WPA 6.1"}, {Foul::kCueBallOff, "WPA 6.1"},
+                                {Foul::kNoBallHit, "WPA 6.3"},       {Foul::kWrongBallFirst, "WPA 6.2"},
+                                {Foul::kNoCushion, "WPA 6.3"},       {Foul::kBallOff, "WPA 6.5"},
+                                {Foul::kPlacedOutside, "WPA 6.10"},  {Foul::kBehindHeadString, "WPA 6.11"},
+                                {Foul::kThirdFoul, "WPA 6.14"},      {Foul::kJumpShot, "option jump"}};
+
+}  // namespace
+
+const std::span<const FoulRule> kPoolFouls = kOfPool;
+
+}  // namespace carom::games

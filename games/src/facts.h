@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -86,8 +87,6 @@ inline const char* own_ball(int player) {
 
 /// The chosen value of an option that the state's game has.
 std::string_view rule(const State& state, std::string_view key);
-/// Whether the options are those of the state's game.
-bool has_its_rules(const State& state);
 
 /// The state for the other player's turn, with the cue ball in hand as given.
 State other_players(const State& state, InHand in_hand);
@@ -97,8 +96,10 @@ State won_by(State state, int winner);
 State scored(State state, int player, int points);
 /// The state of a new break in the same game, by its rules.
 State broken_by(const State& state, int breaker);
+/// The fouls of a verdict; judge() adds their rules.
+std::vector<CalledFoul> called(const std::vector<Foul>& fouls);
 /// The verdict with a single option.
-Verdict one_way(std::vector<Foul> fouls, const Option& option);
+Verdict one_way(const std::vector<Foul>& fouls, const Option& option);
 /// These balls, each spotted on the long string from the foot spot (WPA 1.4).
 std::vector<Respot> on_foot_spot(const Facts& facts, const std::vector<std::string>& balls);
 
@@ -116,38 +117,41 @@ std::vector<Foul> rotation_fouls(const Facts& facts, bool push);
 /// The other player's choice after a push out (WPA 2.4, 9.4), or after a ball that does not count (9.7).
 Verdict shoot_or_pass_back(const State& next, const std::vector<Respot>& respots);
 
-/// A game: a row of a table in the order of Game.
-struct GameRules {
-    enum class Book : std::uint8_t { kPool, kCarom, kSnooker, kPyramid, kFourBall };
-    enum class Struck : std::uint8_t { kCueBall, kOwn, kAny };
-    const char* book_name;
-    Legal (*legal)(const State& state, const std::vector<std::string>& balls);
-    Verdict (*judge)(const Facts& facts);
-    InHand start;                         ///< where the cue ball starts
-    std::vector<std::string_view> balls;  ///< required balls
-    Book book = Book::kPool;              ///< the rules that its fouls break
-    Struck struck = Struck::kCueBall;
-    int target = 0;               ///< points that win, if none are given
-    bool below_zero = false;      ///< whether points may be
-    const char* break_rule = "";  ///< the rule of Foul::kFewCushionsOnBreak
+/// A ball of a start, by fractions of the table's width and length.
+struct Placed {
+    const char* id;
+    double x, y;
 };
-const GameRules& rules_of(Game game);
-
-Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls);
-Legal legal_nine_ball(const State& state, const std::vector<std::string>& balls);
-Legal legal_ten_ball(const State& state, const std::vector<std::string>& balls);
-Legal legal_straight_pool(const State& state, const std::vector<std::string>& balls);
-Legal legal_free_pyramid(const State& state, const std::vector<std::string>& balls);
-Legal legal_carom(const State& state, const std::vector<std::string>& balls);
-Legal legal_snooker(const State& state, const std::vector<std::string>& balls);
-Legal legal_sum_to_three(const State& state, const std::vector<std::string>& balls);
-Verdict judge_eight_ball(const Facts& facts);
-Verdict judge_nine_ball(const Facts& facts);
-Verdict judge_ten_ball(const Facts& facts);
-Verdict judge_straight_pool(const Facts& facts);
-Verdict judge_free_pyramid(const Facts& facts);
-Verdict judge_carom(const Facts& facts);
-Verdict judge_snooker(const Facts& facts);
-Verdict judge_sum_to_three(const Facts& facts);
+/// A start as in GameInfo: a rack, unless it is empty, placed balls, and a strike.
+std::string start_of(std::string_view rack, const std::vector<Placed>& balls, std::string_view struck,
+                     double speed, double aim_deg);
 
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+/// The rule that a foul breaks.
+struct FoulRule {
+    Foul foul;
+    const char* rule;
+};
+
+/// A game's row: its description and its rules.
+struct GameRules {
+    enum class Struck : std::uint8_t { kCueBall, kOwn, kAny };
+    GameInfo info;
+    Legal (*legal)(const State& state, const std::vector<std::string>& balls);
+    Verdict (*judge)(const detail::Facts& facts);
+    InHand start = InHand::kNo;             ///< where the cue ball starts
+    std::vector<std::string_view> balls{};  ///< required balls
+    std::span<const FoulRule> fouls{};
+    Struck struck = Struck::kCueBall;
+    bool below_zero = false;                             ///< whether points may be
+    const char* break_rule = "";                         ///< of Foul::kFewCushionsOnBreak
+    std::string (*words)(const State& state) = nullptr;  ///< more about the next shot
+};
+
+/// The rules that all games of pool share.
+extern const std::span<const FoulRule> kPoolFouls;
+
+}  // namespace carom::games

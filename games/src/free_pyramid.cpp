@@ -1,12 +1,12 @@
 // Free pyramid, the Russian game in which any ball may be struck: the rules at duplet.news
 // ("Free Pyramid", 1 to 7) and the general rules of pyramid.
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "facts.h"
 
 namespace carom::games::detail {
+namespace {
 
 Legal legal_free_pyramid(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
@@ -48,11 +48,37 @@ Verdict judge_free_pyramid(const Facts& facts) {
     for (const std::string& ball : facts.ids())
         if (facts.gone(ball)) down.push_back(ball);
     next = scored(other_players(next, InHand::kNo), 1 - state.turn, 1);
-    Verdict verdict =
-        one_way(std::move(fouls),
-                {Decision::kPlayOn, next, next.over ? std::vector<Respot>() : on_foot_spot(facts, down)});
+    Verdict verdict = one_way(
+        fouls, {Decision::kPlayOn, next, next.over ? std::vector<Respot>() : on_foot_spot(facts, down)});
     verdict.penalty = 1;
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+namespace {
+
+constexpr FoulRule kPyramidFouls[] = {
+    {Foul::kNoBallHit, "pyramid, fouls"},        {Foul::kNoCushion, "pyramid, fouls"},
+    {Foul::kBallOff, "pyramid, fouls"},          {Foul::kPlacedOutside, "pyramid, break"},
+    {Foul::kBehindHeadString, "pyramid, break"}, {Foul::kWrongCueBall, "pyramid, break"}};
+
+}  // namespace
+
+const GameRules kFreePyramid = {
+    .info = {.name = "free_pyramid",
+             .title = "free pyramid",
+             .book = "Free Pyramid and Pyramid general rules, duplet.news, read in November 2026",
+             .target = 8,
+             .table = "pyramid",
+             .start = detail::start_of("game = \"pyramid\"", {{"cue", 0.45, 0.22}}, "cue", 8, 90)},
+    .legal = detail::legal_free_pyramid,
+    .judge = detail::judge_free_pyramid,
+    .start = InHand::kHeadString,
+    .fouls = kPyramidFouls,
+    .struck = GameRules::Struck::kAny};
+
+}  // namespace carom::games

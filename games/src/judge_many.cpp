@@ -33,7 +33,7 @@ void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& out
     const State before = state_of_turn(game, static_cast<Group>(to.group[row]));
     const Verdict verdict = judge(before, record, lucky_call(before, record));
     const State& next = verdict.next();
-    to.foul[row] = verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front());
+    to.foul[row] = verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front().foul);
     // In a game of one player, a passed turn is the end, and the other player's choices are not made.
     to.goes_on[row] = !next.over && next.turn == 0;
     to.group[row] = static_cast<int>(next.group[0]);
@@ -57,8 +57,7 @@ void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& out
             y = back.place.y();
         }
     }
-    const bool pool = game == Game::kEightBall || game == Game::kNineBall || game == Game::kTenBall;
-    to.points[row] = !pool ? verdict.points : verdict.fouls.empty() ? fallen : 0;
+    to.points[row] = game->info.is_scored ? verdict.points : verdict.fouls.empty() ? fallen : 0;
 }
 
 }  // namespace

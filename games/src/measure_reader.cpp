@@ -3,6 +3,7 @@
 #include <cctype>
 #include <charconv>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,7 +44,7 @@ void as_list(Node& text, const Node& measure) {
     const bool list = measure.row != nullptr && std::string_view(measure.row->info.unit) == "list";
     if (!list || text.kind != Node::Kind::kValue || !std::holds_alternative<Texts>(text.value)) return;
     std::string whole = text_of(text.value);
-    for (std::size_t at = 0; (at = whole.find(", ", at)) != std::string::npos;) whole.replace(at, 2, ";");
+    for (std::size_t at = 0; (at = whole.find(", ", at)) != std::string::npos;) whole.replace(at, 2, 1, ';');
     text.value = Texts{whole};
 }
 
@@ -317,12 +318,11 @@ class Reader {
         }
     }
     Game game_of(const std::string& word) const {
-        std::string known;
-        for (std::size_t i = 0; i < names_of(Game{}).size(); ++i) {
-            if (word == names_of(Game{})[i]) return static_cast<Game>(i);
-            known += (i == 0 ? "" : ", ") + std::string(names_of(Game{})[i]);
+        try {
+            return game_named(word);
+        } catch (const std::invalid_argument& refused) {
+            fail(refused.what());
         }
-        fail("expected one of the games " + known + ", not \"" + word + "\"");
     }
 
     // [levels] Deeper ones could overflow the stack.

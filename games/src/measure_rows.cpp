@@ -78,7 +78,8 @@ double distance(const PlayedShot& played, const Arguments& of) {
 
 Texts fouls(const PlayedShot& played, const Arguments& of, bool opening) {
     Texts texts;
-    for (const Foul foul : judged(played, *of.game, opening).fouls) texts.emplace_back(name(foul));
+    for (const CalledFoul& called : judged(played, *of.game, opening).fouls)
+        texts.emplace_back(name(called.foul));
     return texts;
 }
 

@@ -44,7 +44,7 @@ BallStart placed(const BallStart& before, double R, const Vec2& place) {
 /// Whether the cue ball must move: it is gone, or another ball is spotted in its place.
 bool must_place(const Record& record, const Option& option, const std::string& cue) {
     if (detail::is_in(cue, option.respots)) return false;
-    const bool any = detail::rules_of(option.state.game).struck == detail::GameRules::Struck::kAny;
+    const bool any = option.state.game->struck == GameRules::Struck::kAny;
     const int index =
         any && option.state.in_hand == InHand::kNo ? index_of(record, cue) : ball_of(record, option, cue);
     const BallState end = index < 0 ? BallState{} : record.state_at(index, record.duration);
@@ -59,7 +59,7 @@ bool must_place(const Record& record, const Option& option, const std::string& c
 }  // namespace
 
 const char* cue_ball(const State& state) {
-    const bool own = detail::rules_of(state.game).struck == detail::GameRules::Struck::kOwn;
+    const bool own = state.game->struck == GameRules::Struck::kOwn;
     return own ? detail::own_ball(state.turn) : "cue";
 }
 

@@ -10,8 +10,6 @@ namespace {
 
 const std::string kNine = "9";
 
-}  // namespace
-
 Legal legal_nine_ball(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
     legal.cue_balls = {"cue"};
@@ -38,4 +36,33 @@ Verdict judge_nine_ball(const Facts& facts) {
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+const GameRules kNineBall = {
+    .info = {.name = "nine_ball",
+             .title = "nine-ball",
+             .book = "World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 2",
+             .calls = "a push out",
+             .is_scored = false,
+             .has_push_out = true,
+             .balls = 9,
+             .start =
+                 detail::start_of("game = \"nine_ball\"\nspot_ball = 9", {{"cue", 0.4, 0.22}}, "cue", 8, 84),
+             .options =
+                 {{&kNineBall, "push_out", {"true", "false"}, "The shot after the break may be a push out."},
+                  {&kNineBall, "three_fouls", {"true", "false"}, "Three fouls in a row lose the rack."},
+                  {&kNineBall,
+                   "nine_on_break",
+                   {"wins", "respot"},
+                   "Effect of a nine that falls on a fair break."}}},
+    .legal = detail::legal_nine_ball,
+    .judge = detail::judge_nine_ball,
+    .start = InHand::kHeadString,
+    .balls = {"cue", "9"},
+    .fouls = kPoolFouls,
+    .break_rule = "WPA 2.3"};
+
+}  // namespace carom::games

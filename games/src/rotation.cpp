@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "facts.h"
@@ -52,10 +51,10 @@ Verdict rotation_foul(const Facts& facts, std::vector<Foul> fouls, State next, c
     int& in_a_row = next.fouls[static_cast<std::size_t>(next.turn)];
     if (++in_a_row >= kFoulsThatLose && rule(next, "three_fouls") == "true") {
         fouls.push_back(Foul::kThirdFoul);
-        return one_way(std::move(fouls), {Decision::kPlayOn, won_by(next, 1 - next.turn), {}});
+        return one_way(fouls, {Decision::kPlayOn, won_by(next, 1 - next.turn), {}});
     }
-    return one_way(std::move(fouls), {Decision::kTakeInHand, other_players(next, InHand::kAnywhere),
-                                      last_ball_back(facts, last)});
+    return one_way(
+        fouls, {Decision::kTakeInHand, other_players(next, InHand::kAnywhere), last_ball_back(facts, last)});
 }
 
 Verdict shoot_or_pass_back(const State& next, const std::vector<Respot>& respots) {

@@ -131,7 +131,7 @@ std::vector<Hit> driven(const PlayedShot& played, int ball) {
 Verdict judged(const PlayedShot& played, Game game, bool opening) {
     State state = opening ? new_game(game) : state_of_turn(game, Group::kOpen);
     // In a carom game, the player whose ball is struck.
-    if (rules_of(game).struck == GameRules::Struck::kOwn && played.struck() >= 0 &&
+    if (game->struck == GameRules::Struck::kOwn && played.struck() >= 0 &&
         played.id(played.struck()) == own_ball(1))
         state.turn = 1;
     return judge(state, played.record, opening ? Call() : lucky_call(state, played.record));

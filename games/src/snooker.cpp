@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "facts.h"
@@ -276,13 +275,13 @@ void add_miss(const Facts& facts, const Stroke& stroke, const std::vector<std::s
     const bool excused = state.fouls[me] == 0 &&
                          (needs_fouls(state, facts.ids()) || needs_fouls(verdict.options[0].state, on_table));
     if (rule(state, "miss") == "false" || excused || !stroke.missed(false)) return;
-    verdict.fouls.push_back(Foul::kMiss);
+    verdict.fouls.push_back({Foul::kMiss});
     Option replay{Decision::kReplace, state, {}};
     replay.state.points = verdict.options[0].state.points;
     replay.state.in_hand = InHand::kNo;
     replay.state.fouls[me] = stroke.missed(true) ? state.fouls[me] + 1 : 0;
     if (replay.state.fouls[me] >= kMissesThatLose) {
-        verdict.fouls.push_back(Foul::kThirdFoul);
+        verdict.fouls.push_back({Foul::kThirdFoul});
         verdict.options = {{Decision::kPlayOn, won_by(replay.state, 1 - state.turn), {}}};
         verdict.chooser = -1;
         return;
@@ -329,7 +328,7 @@ bool is_snookered(const Facts& facts, const State& next, const std::vector<Respo
 /// respotted, and lots decide who plays it.
 Verdict end_of_frame(const Facts& facts, const Stroke& stroke, State next) {
     Verdict verdict;
-    verdict.fouls = stroke.fouls;
+    verdict.fouls = called(stroke.fouls);
     if (next.points[0] != next.points[1]) {
         verdict.options = {{Decision::kPlayOn, won_by(next, next.points[0] > next.points[1] ? 0 : 1), {}}};
         return verdict;
@@ -342,8 +341,6 @@ Verdict end_of_frame(const Facts& facts, const Stroke& stroke, State next) {
                        {Decision::kPassBack, next, black}};
     return verdict;
 }
-
-}  // namespace
 
 Legal legal_snooker(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
@@ -377,7 +374,7 @@ Verdict judge_snooker(const Facts& facts) {
         for (const std::string& ball : facts.ids())
             if (!facts.gone(ball) || is_in(ball, respots)) on_table.push_back(ball);
         next.on = stroke.next_on(on_table);
-        verdict.fouls = stroke.fouls;
+        verdict.fouls = called(stroke.fouls);
         const State other = other_players(next, next.in_hand);
         verdict.options = {{Decision::kPlayOn, stroke.points() > 0 ? next : other, respots}};
         if (!stroke.fouls.empty()) {
@@ -392,4 +389,51 @@ Verdict judge_snooker(const Facts& facts) {
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+namespace {
+
+constexpr const char* kPenalty = "WPBSA 3, penalties";
+constexpr FoulRule kSnookerFouls[] = {{Foul::kCueBallPocketed, kPenalty},
+                                      {Foul::kCueBallOff, kPenalty},
+                                      {Foul::kNoBallHit, kPenalty},
+                                      {Foul::kWrongBallFirst, kPenalty},
+                                      {Foul::kBallOff, kPenalty},
+                                      {Foul::kPlacedOutside, kPenalty},
+                                      {Foul::kThirdFoul, "WPBSA 3.14"},
+                                      {Foul::kWrongBallPocketed, kPenalty},
+                                      {Foul::kTwoBallsAtOnce, kPenalty},
+                                      {Foul::kJumpShot, kPenalty},
+                                      {Foul::kBehindTheFreeBall, "WPBSA 3, free ball"},
+                                      {Foul::kMiss, "WPBSA 3.14"}};
+
+}  // namespace
+
+const GameRules kSnooker = {
+    .info =
+        {.name = "snooker",
+         .title = "snooker",
+         .book = "World Professional Billiards and Snooker Association, Official rules: section 3",
+         .calls = "the nominated colour or free ball; by default the ball that is hit first",
+         .balls = 21,
+         .table = "snooker",
+         .start = detail::start_of("game = \"snooker\"", {{"cue", 0.58, 0.2}}, "cue", 3.2, 90),
+         .options = {{&kSnooker,
+                      "miss",
+                      {"false", "true"},
+                      "A foul that hits no ball on first, although a straight path to one was clear, is a "
+                      "miss: the other player may have the balls replaced."}}},
+    .legal = detail::legal_snooker,
+    .judge = detail::judge_snooker,
+    .start = InHand::kD,
+    .balls = {"cue", "black"},
+    .fouls = kSnookerFouls,
+    .words = [](const State& state) {
+        const std::string on = state.on == BallOn::kColour ? "any colour" : name(state.on);
+        return ", " + on + " on" + (state.free_ball ? ", free ball" : "");
+    }};
+
+}  // namespace carom::games

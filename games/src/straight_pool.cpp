@@ -87,7 +87,7 @@ Verdict foul(const Facts& facts, std::vector<Foul> fouls, bool breaking, const s
         next.fouls[me] = 0;
     }
     const Option again{Decision::kRerackForOther, broken_by(next, facts.state.turn), {}};
-    Verdict verdict = one_way(std::move(fouls), again);
+    Verdict verdict = one_way(fouls, again);
     verdict.points = -cost - (third ? kThird : 0);
     if (third) return verdict;
     const bool gone = facts.shot.gone(facts.shot.struck);
@@ -99,8 +99,6 @@ Verdict foul(const Facts& facts, std::vector<Foul> fouls, bool breaking, const s
     }
     return verdict;
 }
-
-}  // namespace
 
 Legal legal_straight_pool(const State&, const std::vector<std::string>& balls) {
     Legal legal;
@@ -140,4 +138,25 @@ Verdict judge_straight_pool(const Facts& facts) {
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+const GameRules kStraightPool = {
+    .info = {.name = "straight_pool",
+             .title = "straight pool",
+             .book = "World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 4",
+             .calls = "ball and pocket, or a safety",
+             .has_safety = true,
+             .usual_target = 50,
+             .start = detail::start_of("game = \"triangle\"", {{"cue", 0.65, 0.22}}, "cue", 4, 98)},
+    .legal = detail::legal_straight_pool,
+    .judge = detail::judge_straight_pool,
+    .start = InHand::kHeadString,
+    .balls = {"cue"},
+    .fouls = kPoolFouls,
+    .below_zero = true,
+    .break_rule = "WPA 4.10"};
+
+}  // namespace carom::games

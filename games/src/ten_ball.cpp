@@ -20,8 +20,6 @@ bool ten_is_last(const Facts& facts) {
     });
 }
 
-}  // namespace
-
 Legal legal_ten_ball(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
     legal.cue_balls = {"cue"};
@@ -57,4 +55,33 @@ Verdict judge_ten_ball(const Facts& facts) {
     return one_way({}, {Decision::kPlayOn, other_players(next, InHand::kNo), back});
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+const GameRules kTenBall = {
+    .info = {.name = "ten_ball",
+             .title = "ten-ball",
+             .book = "World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 9",
+             .calls = "ball and pocket, a safety, or a push out",
+             .is_scored = false,
+             .has_safety = true,
+             .has_push_out = true,
+             .balls = 10,
+             .start = detail::start_of("game = \"ten_ball\"", {{"cue", 0.4, 0.22}}, "cue", 8, 84),
+             .options =
+                 {{&kTenBall, "push_out", {"true", "false"}, "The shot after the break may be a push out."},
+                  {&kTenBall, "three_fouls", {"true", "false"}, "Three fouls in a row lose the rack."},
+                  {&kTenBall,
+                   "early_ten",
+                   {"respot", "wins"},
+                   "Effect of a called ten that falls while other balls are left."}}},
+    .legal = detail::legal_ten_ball,
+    .judge = detail::judge_ten_ball,
+    .start = InHand::kHeadString,
+    .balls = {"cue", "10"},
+    .fouls = kPoolFouls,
+    .break_rule = "WPA 9.3"};
+
+}  // namespace carom::games

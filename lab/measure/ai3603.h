@@ -54,7 +54,7 @@ inline Ai3603Shot ai3603_shot(const Record& record, bool solids, int left) {
 inline double ai3603_rack(const std::array<test::Adviser, 2>& advisers, std::uint64_t seed, int breaker,
                           bool breaker_has_solids) {
     constexpr int kMostStrikes = 60;
-    Scene table = test::pool_rack("seven_foot", games::Game::kEightBall, seed);
+    Scene table = test::pool_rack("seven_foot", &games::kEightBall, seed);
     const games::Noise noise = games::noise_by_name("ai3603", table.balls.R);
     const auto left = [&](bool solids) {
         return static_cast<int>(
@@ -64,13 +64,13 @@ inline double ai3603_rack(const std::array<test::Adviser, 2>& advisers, std::uin
             }));
     };
     const auto has_solids = [&](int player) { return (player == breaker) == breaker_has_solids; };
-    games::State state = games::new_game(games::Game::kEightBall, breaker);
+    games::State state = games::new_game(&games::kEightBall, breaker);
     state.opening = false;
     state.in_hand = games::InHand::kNo;
     for (int player : {0, 1})
         state.group[static_cast<std::size_t>(player)] =
             has_solids(player) ? games::Group::kSolids : games::Group::kStripes;
-    games::State opening = games::new_game(games::Game::kEightBall, breaker);
+    games::State opening = games::new_game(&games::kEightBall, breaker);
     bool racked = true;
     for (int n = 0; n < kMostStrikes; ++n) {
         const int player = state.turn;

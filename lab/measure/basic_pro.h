@@ -32,8 +32,11 @@ inline double basic_pro_reward(const games::State& state, const Record& record, 
         if (number == 0 || number == 8) continue;
         reward += (own & games::detail::only(number)) != 0 ? 50.0 : -20.0;
     }
-    const std::vector<Foul> fouls = games::judge(state, record).fouls;
-    const auto is = [&](Foul foul) { return std::find(fouls.begin(), fouls.end(), foul) != fouls.end(); };
+    const std::vector<games::CalledFoul> fouls = games::judge(state, record).fouls;
+    const auto is = [&](Foul foul) {
+        return std::any_of(fouls.begin(), fouls.end(),
+                           [&](const auto& called) { return called.foul == foul; });
+    };
     const bool wrong = is(Foul::kWrongBallFirst) || is(Foul::kNoBallHit), no_rail = is(Foul::kNoCushion);
     if (wrong) reward -= 30.0;
     if (no_rail) reward -= 30.0;

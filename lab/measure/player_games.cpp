@@ -123,7 +123,7 @@ void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro,
             fmt::print(
                 "player {}: {}, foretold {:.2f}: {}{}\n", before.turn + 1,
                 words_of(shot.advice, shot.table.table), shot.advice.makes.value, made ? "made" : "missed",
-                shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0]));
+                shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0].foul));
         if (first) count.breaks += made && !shot.taken.state.over;
         first = false;
         return !alone || made;
@@ -147,23 +147,23 @@ std::string share(int part, int whole) {
 /// A random position of a game.
 std::pair<State, Scene> position(Game game, std::uint64_t seed) {
     SplitMix64 random = draws_of(seed, 0, "position");
-    const int last = game == Game::kNineBall  ? 9
-                     : game == Game::kTenBall ? 10
-                                              : 15,
-              money = game == Game::kEightBall ? 8 : last;
+    const int last = game == &games::kNineBall  ? 9
+                     : game == &games::kTenBall ? 10
+                                                : 15,
+              money = game == &games::kEightBall ? 8 : last;
     State state = new_game(game);
     state.opening = false;
     const double hand = random.uniform();
-    state.in_hand = hand < 1.0 / 3.0                               ? InHand::kNo
-                    : hand < 2.0 / 3.0 || game != Game::kEightBall ? InHand::kAnywhere
-                                                                   : InHand::kHeadString;
+    state.in_hand = hand < 1.0 / 3.0                                 ? InHand::kNo
+                    : hand < 2.0 / 3.0 || game != &games::kEightBall ? InHand::kAnywhere
+                                                                     : InHand::kHeadString;
     Scene scene = parse_scene(
         "[table]\npreset = \"nine_foot\"\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n", "position");
     scene.ball.clear();
     const double share = random.uniform();
     std::vector<Lying> others;
     for (int n = 0; n <= last; ++n) {
-        const bool needed = n == 0 || n == money || n == 1 || (game == Game::kEightBall && n == 9);
+        const bool needed = n == 0 || n == money || n == 1 || (game == &games::kEightBall && n == 9);
         if (!needed && random.uniform() > share) continue;
         BallStart ball;
         ball.id = n == 0 ? "cue" : std::to_string(n);
@@ -230,9 +230,9 @@ int main(int argc, char** argv) {
     const std::size_t levels = alone || asks || words[0] == "breaks" ? 1 : 2;
     const int racks = words.size() > levels + 1 ? std::stoi(words[levels + 1]) : 20;
     const std::string named = words.size() > levels + 2 ? words[levels + 2] : "eight_ball";
-    const Game game = named == "nine_ball"  ? Game::kNineBall
-                      : named == "ten_ball" ? Game::kTenBall
-                                            : Game::kEightBall;
+    const Game game = named == "nine_ball"  ? &games::kNineBall
+                      : named == "ten_ball" ? &games::kTenBall
+                                            : &games::kEightBall;
     const std::uint64_t seed = words.size() > levels + 3 ? std::stoull(words[levels + 3]) : 1;
     const Tell tell = words[0] == "positions" ? Tell::kFeatures
                       : words[0] == "chances" ? Tell::kWins

@@ -133,13 +133,6 @@ def _check(name: str, kind: _Kind, value: Any) -> None:
         raise ArgumentError(f"{name}: expected {words}, not {reprlib.repr(value)} ({type(value).__name__})")
 
 
-def check_fields(of: tuple[Any, ...]) -> None:
-    """Raises ArgumentError for a field of a NamedTuple that does not match its annotation."""
-    for (name, annotation), value in zip(type(of).__annotations__.items(), of):
-        text = str(getattr(annotation, "__forward_arg__", annotation))
-        _check(name, _kind(ast.parse(text, mode="eval").body), value)
-
-
 def _checked(function: Any) -> Callable[..., Any]:
     code = function.__code__
     names = code.co_varnames[: code.co_argcount]

@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import Literal, TypeAlias
 
 from carom._arguments import may_be
+from carom._types import GameName as GameName
 
-GameName: TypeAlias = Literal["eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three",
-                              "ten_ball", "straight_pool", "free_pyramid", "straight_rail", "one_cushion",
-                              "four_ball"]
 RackName: TypeAlias = Literal["nine_ball", "ten_ball", "eight_ball"]
 TableName: TypeAlias = Literal["seven_foot", "seven_foot_bar", "eight_foot", "nine_foot", "snooker",
                                "english_pool", "carom", "carom_ten_foot"]

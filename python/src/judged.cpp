@@ -32,7 +32,7 @@ std::vector<Failure> judge_many(const NativeScene& native, const std::string& na
     for (const std::size_t size : {group.size(), foul.size(), points.size(), goes_on.size(),
                                    xy.size() / (2 * native.scene->ball.size())})
         if (size != shots) throw nb::value_error("expected arrays with the same number of shots");
-    const games::Game game = value_of<games::Game>("game", name);
+    const games::Game game = games::game_named(name);
     const games::JudgedArrays judged = {xy.data(), group.data(), foul.data(), points.data(), goes_on.data()};
     return played_columns(native, columns, absent, std::nullopt, max_events, threads, out,
                           [&](const Scene& scene, std::span<const BatchColumn> list, kernel::Isa isa,
@@ -45,7 +45,7 @@ std::vector<Failure> judge_many(const NativeScene& native, const std::string& na
 void legal_many(const NativeScene& native, const std::string& game, const Flat<const double>& xy,
                 const Flat<const std::int32_t>& group, const Flat<std::uint8_t>& out) {
     const std::vector<BallStart>& balls = native.scene->ball;
-    const games::Game of = value_of<games::Game>("game", game);
+    const games::Game of = games::game_named(game);
     if (xy.size() != 2 * out.size() || out.size() != group.size() * balls.size())
         throw nb::value_error("expected arrays with the same number of tables");
     std::fill_n(out.data(), out.size(), std::uint8_t{0});

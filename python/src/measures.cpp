@@ -32,7 +32,7 @@
 namespace carom::python {
 
 std::optional<games::Game> game_or_none(const std::optional<std::string>& game) {
-    return game ? std::optional(value_of<games::Game>("game", *game)) : std::nullopt;
+    return game ? std::optional(games::game_named(*game)) : std::nullopt;
 }
 
 namespace {

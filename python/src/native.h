@@ -5,7 +5,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,18 +40,6 @@ template <class E>
 std::vector<std::string> names_in_files() {
     const auto names = names_of(E());
     return {names.begin(), names.end()};
-}
-
-/// The value of this name. @throws nb::value_error listing the known ones
-template <class E>
-E value_of(const char* what, const std::string& text) {
-    const auto names = names_of(E());
-    const auto found = std::find(names.begin(), names.end(), text);
-    if (found != names.end()) return static_cast<E>(found - names.begin());
-    std::string known;
-    for (const char* each : names) known += (known.empty() ? "" : ", ") + std::string(each);
-    throw nb::value_error(
-        ("no " + std::string(what) + " \"" + text + "\"; expected one of " + known).c_str());
 }
 
 /// The scene that was played, or `other`. @throws nb::value_error if there is none, or one with other balls

@@ -214,7 +214,7 @@ TEST(CApiGames, BadArgumentsAreNamed) {
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 2, 0, &state), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 0, 0, nullptr), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_game_new(CAROM_THREE_CUSHION, 0, INT_MAX, &state), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "target = 2147483647 is out of range; it must be 0 to 1000000000");
+    EXPECT_STREQ(carom_last_error(), "state.target: expected a whole number from 0 to 1000000000");
     state = nine_ball();
     EXPECT_EQ(carom_legal(&state, 0, nullptr, nullptr, nullptr, nullptr), CAROM_BAD_ARGUMENT);
     const RecordPtr record = played(parsed(kScratch).get());
@@ -225,7 +225,7 @@ TEST(CApiGames, BadArgumentsAreNamed) {
     state.over = 0;
     state.fouls[0] = INT_MAX;
     EXPECT_EQ(carom_judge(&state, record.get(), nullptr, &verdict), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "fouls = 2147483647 is out of range; it must be 0 to 1000000000");
+    EXPECT_STREQ(carom_last_error(), "state.fouls[0]: expected a whole number from 0 to 1000000000");
     state.fouls[0] = 0;
     state.group[1] = 3;
     EXPECT_EQ(carom_judge(&state, record.get(), nullptr, &verdict), CAROM_BAD_ARGUMENT);

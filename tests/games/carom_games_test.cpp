@@ -38,7 +38,7 @@ Record three_between(const std::string& first, const std::string& second) {
 }
 
 State inning(int turn = 0, int target = 0) {
-    State state = games::new_game(Game::kThreeCushion, turn, target);
+    State state = games::new_game(&games::kThreeCushion, turn, target);
     state.opening = false;
     return state;
 }
@@ -118,7 +118,7 @@ TEST(ThreeCushion, EachPlayerHasABall) {
 }
 
 TEST(ThreeCushion, TheOpeningShotIsAtTheRed) {
-    const State opening = games::new_game(Game::kThreeCushion);
+    const State opening = games::new_game(&games::kThreeCushion);
     EXPECT_EQ(games::legal(opening, std::vector<std::string>{"white", "yellow", "red"}).first,
               (std::vector<std::string>{"red"}));
     const Record yellow = three_between("yellow", "red");
@@ -186,7 +186,7 @@ TEST(ThreeCushion, TheTargetEndsTheGame) {
 }
 
 TEST(ThreeCushion, ATouchingBallMustNotBePlayedInto) {
-    for (const Game game : {Game::kThreeCushion, Game::kOneCushion, Game::kStraightRail}) {
+    for (const Game game : {&games::kThreeCushion, &games::kOneCushion, &games::kStraightRail}) {
         State state = games::new_game(game);
         state.opening = false;
         // The red touches at 68.755 degrees.
@@ -218,7 +218,7 @@ TEST(SumToThree, ThreeCushionsOfBothBallsWithAHitScore) {
         for (int k = 0; k < object; ++k) told.cushion("1", k % 4);
         return told.record();
     };
-    const State state = games::new_game(Game::kSumToThree, 0, 10);
+    const State state = games::new_game(&games::kSumToThree, 0, 10);
     for (int cue = 0; cue <= 4; ++cue)
         for (int object = 0; object <= 4; ++object) {
             const Verdict v = judge(state, shot(cue, object, true));

@@ -39,12 +39,12 @@ Told full_rack() {
 }
 
 State break_shot() {
-    return games::new_game(Game::kEightBall);
+    return games::new_game(&games::kEightBall);
 }
 
 /// A state after the break in which player 0 has `own`.
 State playing(Group own) {
-    State state = games::new_game(Game::kEightBall);
+    State state = games::new_game(&games::kEightBall);
     state.opening = false;
     state.in_hand = InHand::kNo;
     if (own != Group::kOpen) state.group = {own, own == Group::kSolids ? Group::kStripes : Group::kSolids};
@@ -91,8 +91,8 @@ TEST(EightBall, Rule33dFourBallsToACushionAreALegalBreak) {
     EXPECT_EQ(three.chooser, 1);
     EXPECT_EQ(decisions(three), (Decisions{Decision::kPlayOn, Decision::kRerack, Decision::kRerackForOther}));
     EXPECT_EQ(three.options[0].state.turn, 1);
-    EXPECT_EQ(three.options[1].state, games::new_game(Game::kEightBall, 1));
-    EXPECT_EQ(three.options[2].state, games::new_game(Game::kEightBall, 0));
+    EXPECT_EQ(three.options[1].state, games::new_game(&games::kEightBall, 1));
+    EXPECT_EQ(three.options[2].state, games::new_game(&games::kEightBall, 0));
     const Verdict four = judge(break_shot(), told.cushion("12").record());
     EXPECT_EQ(decisions(four), (Decisions{Decision::kPlayOn}));
     EXPECT_EQ(four.chooser, -1);
@@ -109,7 +109,7 @@ TEST(EightBall, Rule33eTheEightOnALegalBreakMaySpotOrBreakAgain) {
     EXPECT_EQ(v.respots()[0].place, foot_spot(make_table("nine_foot")));
     EXPECT_EQ(v.next().turn, 0);
     EXPECT_FALSE(v.next().over);
-    EXPECT_EQ(v.options[1].state, games::new_game(Game::kEightBall, 0));
+    EXPECT_EQ(v.options[1].state, games::new_game(&games::kEightBall, 0));
 }
 
 TEST(EightBall, Rule33fTheEightWithAScratchOnTheBreakGivesTheOtherTheChoice) {
@@ -236,8 +236,8 @@ TEST(EightBall, Rule61TheCueBallInAPocketOrOffTheTable) {
     EXPECT_EQ(judge(playing(Group::kSolids), potted({"1"}, "1", {"cue"})).fouls,
               (Fouls{Foul::kCueBallPocketed}));
     const Record off = table({"1"}).strike("cue").hit("cue", "1").cushion("1").out("cue").record();
-    EXPECT_EQ(judge(playing(Group::kSolids), off).fouls, (Fouls{Foul::kCueBallOff}));
-    EXPECT_STREQ(games::rule_of(Game::kEightBall, Foul::kCueBallOff), "WPA 6.1");
+    const std::vector<games::CalledFoul> fouls = judge(playing(Group::kSolids), off).fouls;
+    EXPECT_EQ(fouls, (std::vector<games::CalledFoul>{{Foul::kCueBallOff, "WPA 6.1"}}));
 }
 
 TEST(EightBall, Rule62TwoBallsHitAtOnceCountForTheShooter) {
@@ -291,7 +291,7 @@ TEST(EightBall, ShotsOfAnotherGameAreRefused) {
     EXPECT_THROW(judge(over, potted({"1"}, "1", {})), std::invalid_argument);
     EXPECT_THROW(games::legal(playing(Group::kSolids), std::vector<std::string>{"cue"}),
                  std::invalid_argument);
-    EXPECT_THROW(games::new_game(Game::kEightBall, 2), std::invalid_argument);
+    EXPECT_THROW(games::new_game(&games::kEightBall, 2), std::invalid_argument);
 }
 
 }  // namespace

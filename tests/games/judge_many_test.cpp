@@ -15,6 +15,7 @@
 #include "carom/engine/simulate.h"
 #include "carom/games/shot.h"
 #include "carom/kernel/splitmix64.h"
+#include "made_record.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {
@@ -34,13 +35,13 @@ const std::vector<GameScene>& game_scenes() {
     static const std::string cue = "[cue]\nspeed = 4.0\naim_deg = 90.0\n",
                              ball = "[[ball]]\nid = \"cue\"\nposition = [0.6, 0.5]\n";
     static const std::vector<GameScene> list = {
-        {Game::kEightBall, "[rack]\ngame = \"eight_ball\"\n" + ball + cue},
-        {Game::kNineBall, "[rack]\ngame = \"nine_ball\"\n" + ball + cue},
-        {Game::kThreeCushion,
+        {&games::kEightBall, "[rack]\ngame = \"eight_ball\"\n" + ball + cue},
+        {&games::kNineBall, "[rack]\ngame = \"nine_ball\"\n" + ball + cue},
+        {&games::kThreeCushion,
          "[table]\npreset = \"carom\"\n[balls]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\n"
          "[cue]\nball = \"white\"\nspeed = 4.0\naim_deg = 90.0\n"},
-        {Game::kSumToThree, "[table]\npreset = \"carom\"\n[balls]\npreset = \"carom\"\n" + ball +
-                                "[[ball]]\nid = \"1\"\nposition = [0.7, 2.0]\n" + cue}};
+        {&games::kSumToThree, "[table]\npreset = \"carom\"\n[balls]\npreset = \"carom\"\n" + ball +
+                                  "[[ball]]\nid = \"1\"\nposition = [0.7, 2.0]\n" + cue}};
     return list;
 }
 
@@ -58,7 +59,7 @@ struct RandomTables {
             for (const char* axis : {".position.x", ".position.y"}) keys.push_back("ball." + ball.id + axis);
         values.assign(keys.size(), std::vector<double>(n));
         absent.resize(n * base.ball.size());
-        SplitMix64 random(7 + static_cast<std::uint64_t>(of.game));
+        SplitMix64 random(7 + number_of(of.game));
         for (std::size_t i = 0; i < n; ++i) draw(of.game, i, random);
     }
 
@@ -66,7 +67,7 @@ struct RandomTables {
         values[0][i] = 360.0 * random.uniform();
         values[1][i] = i % 20 == 7 ? -1.0 : 2.0 + 5.0 * random.uniform();
         values[2][i] = random.below(6) == 0 ? 30.0 : 0.0;
-        groups.push_back(game == Game::kEightBall ? random.below(3) : 0);
+        groups.push_back(game == &games::kEightBall ? random.below(3) : 0);
         std::vector<Vec2> places;
         while (places.size() < base.ball.size()) {
             const double R = base.balls.R;
@@ -164,11 +165,11 @@ void expect_row(const RandomTables& tables, Game game, const Judgements& got, st
     const Scene scene = tables.shot(i);
     const Record record = simulate(make_plan(scene, kSet));
     const games::Verdict verdict = games::judge(state, record, call_of(state, scene, record));
-    EXPECT_EQ(got.foul[i], verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front()));
+    EXPECT_EQ(got.foul[i], verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front().foul));
     EXPECT_EQ(got.group[i], static_cast<int>(verdict.next().group[0]));
     EXPECT_EQ(got.goes_on[i], verdict.next().turn == 0 && !verdict.next().over);
     const games::Shot shot = games::shot_of(record);
-    const bool pool = game == Game::kEightBall || game == Game::kNineBall;
+    const bool pool = game == &games::kEightBall || game == &games::kNineBall;
     const auto fallen = std::count_if(shot.pocketed.begin(), shot.pocketed.end(),
                                       [&](const games::Shot::Fallen& f) { return f.ball != shot.struck; });
     EXPECT_EQ(got.points[i], !pool ? verdict.points : verdict.fouls.empty() ? fallen : 0);
@@ -196,8 +197,7 @@ TEST(JudgeMany, GivesTheVerdictOfTheRulesForEveryShot) {
         const RandomTables tables(of, 720);  // few random shots score at three-cushion
         Seen seen;
         for (const int threads : {1, 3}) {
-            SCOPED_TRACE(std::string(games::names_of(Game())[static_cast<std::size_t>(of.game)]) + " on " +
-                         std::to_string(threads));
+            SCOPED_TRACE(std::string(name(of.game)) + " on " + std::to_string(threads));
             const Judgements got = judged(tables, of.game, threads);
             for (std::size_t i = 0; i < tables.shots; ++i) {
                 SCOPED_TRACE(i);
@@ -210,7 +210,7 @@ TEST(JudgeMany, GivesTheVerdictOfTheRulesForEveryShot) {
         EXPECT_GT(seen.points, 0);
         EXPECT_GT(seen.turns, 0);
         EXPECT_EQ(seen.refused, 2 * 36);
-        EXPECT_TRUE(seen.back > 0 || of.game == Game::kEightBall);
+        EXPECT_TRUE(seen.back > 0 || of.game == &games::kEightBall);
     }
 }
 
@@ -219,7 +219,7 @@ TEST(JudgeMany, RefusesATableWithoutItsBalls) {
     RandomTables tables(game_scenes()[1], 40);
     for (std::size_t b = 0; b < tables.base.ball.size(); ++b)
         if (tables.base.ball[b].id == "9") tables.absent[30 * tables.base.ball.size() + b] = 1;
-    EXPECT_THROW(judged(tables, Game::kNineBall, 2), std::invalid_argument);
+    EXPECT_THROW(judged(tables, &games::kNineBall, 2), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Records made for a rule: balls at given places, and events added one by one.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -10,7 +12,23 @@
 #include "carom/games/rules.h"
 #include "carom/games/shot.h"
 
+namespace carom::games {
+
+/// A verdict's fouls, without their rules.
+inline bool operator==(const std::vector<CalledFoul>& called, const std::vector<Foul>& fouls) {
+    return std::equal(called.begin(), called.end(), fouls.begin(), fouls.end(),
+                      [](const CalledFoul& one, Foul other) { return one.foul == other; });
+}
+
+}  // namespace carom::games
+
 namespace carom::test {
+
+/// The place of a game in the list of all games.
+inline std::size_t number_of(games::Game game) {
+    const auto all = games::all_of(game);
+    return static_cast<std::size_t>(std::find(all.begin(), all.end(), game) - all.begin());
+}
 
 /// A shot in a referee's words. Every call adds an event, a tenth of a second after the previous one.
 class Told {

@@ -31,16 +31,16 @@ struct Start {
     const char* scene;
 };
 const Start kStarts[] = {
-    {Game::kEightBall, "[table]\npreset = \"nine_foot\"\n[rack]\ngame = \"eight_ball\"\n"},
-    {Game::kNineBall, "[table]\npreset = \"nine_foot\"\n[rack]\ngame = \"nine_ball\"\n"},
-    {Game::kThreeCushion, "[table]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\n"},
-    {Game::kSnooker, "[table]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\n"},
-    {Game::kTenBall, "[table]\npreset = \"nine_foot\"\n[rack]\ngame = \"ten_ball\"\n"},
-    {Game::kStraightPool, "[table]\npreset = \"seven_foot\"\n[rack]\ngame = \"triangle\"\n"},
-    {Game::kFreePyramid, "[table]\npreset = \"pyramid\"\n[rack]\ngame = \"pyramid\"\n"},
-    {Game::kStraightRail, "[table]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\n"},
-    {Game::kOneCushion, "[table]\npreset = \"carom_small\"\n[rack]\ngame = \"three_cushion\"\n"},
-    {Game::kFourBall, "[table]\npreset = \"carom\"\n[rack]\ngame = \"four_ball\"\n"},
+    {&games::kEightBall, "[table]\npreset = \"nine_foot\"\n[rack]\ngame = \"eight_ball\"\n"},
+    {&games::kNineBall, "[table]\npreset = \"nine_foot\"\n[rack]\ngame = \"nine_ball\"\n"},
+    {&games::kThreeCushion, "[table]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\n"},
+    {&games::kSnooker, "[table]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\n"},
+    {&games::kTenBall, "[table]\npreset = \"nine_foot\"\n[rack]\ngame = \"ten_ball\"\n"},
+    {&games::kStraightPool, "[table]\npreset = \"seven_foot\"\n[rack]\ngame = \"triangle\"\n"},
+    {&games::kFreePyramid, "[table]\npreset = \"pyramid\"\n[rack]\ngame = \"pyramid\"\n"},
+    {&games::kStraightRail, "[table]\npreset = \"carom\"\n[rack]\ngame = \"three_cushion\"\n"},
+    {&games::kOneCushion, "[table]\npreset = \"carom_small\"\n[rack]\ngame = \"three_cushion\"\n"},
+    {&games::kFourBall, "[table]\npreset = \"carom\"\n[rack]\ngame = \"four_ball\"\n"},
 };
 
 /// A match of random players.
@@ -50,8 +50,7 @@ class Match {
         state_ = games::new_game(start.game, random_.below(2), random_.below(2) * 5);
         for (const games::RuleOption& option : games::rule_options())
             if (option.game == start.game)
-                games::set_rule(state_,
-                                std::string(option.key) + "=" + option.values[pick(option.values.size())]);
+                games::set_rule(state_, option.key + "=" + option.values[pick(option.values.size())]);
         rack();
     }
 
@@ -79,7 +78,7 @@ class Match {
     void rack() {
         std::string text =
             std::string(start_.scene) + "seed = " + std::to_string(1 + random_.below(1000000)) + "\n";
-        if (start_.game == Game::kFourBall || state_.in_hand == InHand::kNo) return begin(text);
+        if (start_.game == &games::kFourBall || state_.in_hand == InHand::kNo) return begin(text);
         begin(text + "[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n");
     }
     void begin(const std::string& text) {
@@ -211,8 +210,8 @@ class Match {
     }
     /// Whether the game scores its verdicts' points.
     bool counts() const {
-        return state_.game != Game::kEightBall && state_.game != Game::kNineBall &&
-               state_.game != Game::kTenBall;
+        return state_.game != &games::kEightBall && state_.game != &games::kNineBall &&
+               state_.game != &games::kTenBall;
     }
 
     const Start& start_;

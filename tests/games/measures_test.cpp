@@ -26,7 +26,7 @@ Scene scene_named(const std::string& name) {
 }
 
 std::string asked(const std::string& text, const Scene& scene, const Record& record) {
-    return text_of(Measure(text, scene, games::Game::kEightBall).of(record));
+    return text_of(Measure(text, scene, &games::kEightBall).of(record));
 }
 
 TEST(Measures, DescribeAShot) {
@@ -187,7 +187,7 @@ TEST(Measures, MistakesAreLocated) {
     refused("cushion_x(0)", "from 1 to 1000");
     refused("cushion_x(cue)", "expected a number");
     refused("foul", "expected foul(GAME)");
-    refused("foul(chess)", "expected one of the games eight_ball");
+    refused("foul(chess)", "no game \"chess\"; expected one of eight_ball");
     refused("pocketed < 3", "expected numbers beside <");
     refused("pocketed + 1", "expected numbers beside +");
     refused("\"1", "closing quote");

@@ -37,7 +37,7 @@ Told nine_table(int lowest, double y = 0.3) {
 }
 
 State nine_break() {
-    return games::new_game(Game::kNineBall);
+    return games::new_game(&games::kNineBall);
 }
 
 State playing() {
@@ -144,7 +144,7 @@ TEST(NineBall, Rule614ThreeFoulsInARowLoseTheRack) {
     const Verdict third = judge(state, foul);
     EXPECT_TRUE(third.next().over);
     EXPECT_EQ(third.next().winner, 1);
-    EXPECT_EQ(third.fouls.back(), Foul::kThirdFoul);
+    EXPECT_EQ(third.fouls.back().foul, Foul::kThirdFoul);
     // A player's own fair shot ends the series.
     EXPECT_EQ(judge(state, fair).next().fouls[0], 0);
 }

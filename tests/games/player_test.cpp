@@ -65,7 +65,7 @@ std::vector<Advice> ask(const State& state, const Scene& scene, const AdviceOpti
 TEST(Player, StraightIn) {
     // Into the corner at the origin, along the diagonal.
     const Advice best =
-        ask(turn(Game::kEightBall, Group::kSolids),
+        ask(turn(&games::kEightBall, Group::kSolids),
             table({{"cue", {0.6, 0.6}}, {"3", {0.3, 0.3}}, {"8", {1.0, 2.3}}, {"9", {0.2, 2.0}}}))
             .front();
     EXPECT_EQ(best.ball, "3");
@@ -78,7 +78,7 @@ TEST(Player, StraightIn) {
 TEST(Player, RefusesToAdviseNothing) {
     AdviceOptions none;
     none.best = 0;
-    EXPECT_THROW(games::advise(games::new_game(Game::kEightBall),
+    EXPECT_THROW(games::advise(games::new_game(&games::kEightBall),
                                table({{"cue", {0.4, 0.4}}, {"1", {0.6, 1.2}}, {"8", {0.6, 2.0}}}),
                                games::skill_by_name("club", kPoolRadius), kernel::best_isa(), none),
                  std::invalid_argument);
@@ -87,7 +87,7 @@ TEST(Player, RefusesToAdviseNothing) {
 TEST(Player, PlaysACombinationIfThatIsAll) {
     // The 9 hangs in the corner behind the 1, the only ball that may be hit first: the 1 drives it in.
     const Advice best =
-        ask(turn(Game::kNineBall), table({{"cue", {0.6, 0.6}}, {"1", {0.25, 0.25}}, {"9", {0.1, 0.1}}}))
+        ask(turn(&games::kNineBall), table({{"cue", {0.6, 0.6}}, {"1", {0.25, 0.25}}, {"9", {0.1, 0.1}}}))
             .front();
     EXPECT_EQ(best.ball, "9");
     EXPECT_EQ(best.kind, ShotKind::kCombination);
@@ -95,7 +95,7 @@ TEST(Player, PlaysACombinationIfThatIsAll) {
 
 TEST(Player, NeverPotsTheEightTooEarly) {
     const std::vector<Advice> advice =
-        ask(turn(Game::kEightBall, Group::kSolids),
+        ask(turn(&games::kEightBall, Group::kSolids),
             table({{"cue", {0.6, 0.6}}, {"8", {0.07, 0.07}}, {"3", {1.0, 2.0}}, {"9", {0.2, 2.3}}}));
     for (const Advice& a : advice) {
         EXPECT_NE(a.ball, "8");
@@ -104,7 +104,7 @@ TEST(Player, NeverPotsTheEightTooEarly) {
 }
 
 TEST(Player, PotsTheEightLast) {
-    const Advice best = ask(turn(Game::kEightBall, Group::kSolids),
+    const Advice best = ask(turn(&games::kEightBall, Group::kSolids),
                             table({{"cue", {0.6, 0.6}}, {"8", {0.3, 0.3}}, {"9", {0.2, 2.3}}}))
                             .front();
     EXPECT_EQ(best.call.ball, "8");
@@ -115,7 +115,7 @@ TEST(Player, PotsTheEightLast) {
 TEST(Player, DoesNotStrikeSteeply) {
     const Scene scene =
         table({{"cue", {0.6, 0.6}}, {"1", {0.35, 0.35}}, {"9", {0.643, 0.643}}, {"8", {0.3, 2.4}}});
-    for (const Advice& advice : ask(turn(Game::kEightBall, Group::kSolids), scene))
+    for (const Advice& advice : ask(turn(&games::kEightBall, Group::kSolids), scene))
         EXPECT_LE(advice.cue.elevation_deg, 30.0);
 }
 
@@ -123,20 +123,20 @@ TEST(Player, PlaysHalfOfItsSnookeredShotsFairly) {
     // A wall of stripes hides the last solid.
     Places places = {{"cue", {0.635, 0.3}}, {"3", {0.635, 2.2}}, {"8", {0.3, 2.4}}};
     for (int k = 0; k < 7; ++k) places.push_back({std::to_string(9 + k), {0.44 + 0.065 * k, 0.6}});
-    const Advice best = ask(turn(Game::kEightBall, Group::kSolids), table(places)).front();
+    const Advice best = ask(turn(&games::kEightBall, Group::kSolids), table(places)).front();
     EXPECT_LT(best.fouls.value, 0.5);
 }
 
 TEST(Player, PlacesTheBallInHand) {
     const Scene scene = table({{"3", {0.08, 0.08}}, {"8", {1.0, 2.3}}, {"9", {0.2, 2.0}}});
-    const State state = turn(Game::kEightBall, Group::kSolids, InHand::kAnywhere);
+    const State state = turn(&games::kEightBall, Group::kSolids, InHand::kAnywhere);
     const Advice best = ask(state, scene).front();
     ASSERT_TRUE(best.place.has_value());
     EXPECT_EQ(best.ball, "3");
     EXPECT_GT(best.makes.value, 0.95);
     EXPECT_NO_THROW(validate(games::scene_with(scene, best)));
     // Behind the head string, it may not hit the ball lying there.
-    const Advice behind = ask(turn(Game::kEightBall, Group::kSolids, InHand::kHeadString), scene).front();
+    const Advice behind = ask(turn(&games::kEightBall, Group::kSolids, InHand::kHeadString), scene).front();
     EXPECT_LT(behind.place->y(), games::head_string(scene.table));
 }
 
@@ -150,7 +150,7 @@ TEST(Player, MovesTheBallInHandFromIllegalPlaces) {
     }
     const Scene scene = table(places);
     for (const InHand in_hand : {InHand::kAnywhere, InHand::kHeadString}) {
-        const Advice best = ask(turn(Game::kEightBall, Group::kSolids, in_hand), scene).front();
+        const Advice best = ask(turn(&games::kEightBall, Group::kSolids, in_hand), scene).front();
         ASSERT_TRUE(best.place.has_value());
         EXPECT_TRUE(games::in_area(scene.table, in_hand, *best.place));
         for (const auto& [id, at] : places) {
@@ -163,7 +163,7 @@ TEST(Player, MovesTheBallInHandFromIllegalPlaces) {
 
 TEST(Player, AdviceOffersDifferentShots) {
     const std::vector<Advice> advice =
-        ask(turn(Game::kEightBall),
+        ask(turn(&games::kEightBall),
             table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}}));
     ASSERT_GE(advice.size(), 2u);
     for (std::size_t i = 0; i < advice.size(); ++i)
@@ -172,12 +172,12 @@ TEST(Player, AdviceOffersDifferentShots) {
                          advice[i].pocket == advice[j].pocket);
     // A table with the same balls in another order.
     Scene turned = table({{"8", {0.4, 2.2}}, {"3", {1.0, 0.5}}, {"9", {0.9, 1.4}}, {"cue", {0.6, 0.9}}});
-    EXPECT_EQ(ask(turn(Game::kEightBall), turned).front().cue.aim_deg, advice.front().cue.aim_deg);
+    EXPECT_EQ(ask(turn(&games::kEightBall), turned).front().cue.aim_deg, advice.front().cue.aim_deg);
 }
 
 TEST(Player, SameBitsFromEveryThreadAndInstructionSet) {
     const Scene scene = table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}});
-    const State state = turn(Game::kEightBall);
+    const State state = turn(&games::kEightBall);
     const Skill skill = games::skill_by_name("league", kPoolRadius);
     AdviceOptions options;
     const auto asked = [&](kernel::Isa isa, int threads) {
@@ -204,30 +204,30 @@ std::string refusal(const State& state, const Scene& scene) {
 
 TEST(Player, RefusesUnplayableTables) {
     const Scene scene = table({{"cue", {0.6, 0.9}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}});
-    EXPECT_NE(refusal(turn(Game::kSnooker), scene).find("carom does not play snooker"), std::string::npos);
-    State over = turn(Game::kEightBall);
+    EXPECT_NE(refusal(turn(&games::kSnooker), scene).find("carom does not play snooker"), std::string::npos);
+    State over = turn(&games::kEightBall);
     over.over = true;
     EXPECT_NE(refusal(over, scene).find("the game is over"), std::string::npos);
     EXPECT_NE(
-        refusal(turn(Game::kEightBall), table({{"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}})).find("no cue ball"),
+        refusal(turn(&games::kEightBall), table({{"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}})).find("no cue ball"),
         std::string::npos);
     EXPECT_NE(
-        refusal(turn(Game::kEightBall), table({{"cue", {0.6, 0.9}}, {"red", {1.0, 0.5}}})).find("\"red\""),
+        refusal(turn(&games::kEightBall), table({{"cue", {0.6, 0.9}}, {"red", {1.0, 0.5}}})).find("\"red\""),
         std::string::npos);
-    EXPECT_NE(refusal(turn(Game::kEightBall), table({{"cue", {0.6, 0.9}}})), "");
+    EXPECT_NE(refusal(turn(&games::kEightBall), table({{"cue", {0.6, 0.9}}})), "");
     Scene endless = scene;
     endless.physics.gravity = 0.0;
-    EXPECT_NE(refusal(turn(Game::kEightBall), endless).find("gravity = 0"), std::string::npos);
+    EXPECT_NE(refusal(turn(&games::kEightBall), endless).find("gravity = 0"), std::string::npos);
     endless = scene;
     endless.balls.mu_r = 0.0;
-    EXPECT_NE(refusal(turn(Game::kEightBall), endless).find("mu_r = 0"), std::string::npos);
+    EXPECT_NE(refusal(turn(&games::kEightBall), endless).find("mu_r = 0"), std::string::npos);
     // A stop of the scene does not end a trial.
     Scene stopped = scene;
     stopped.stop.time = 0.1;
-    EXPECT_GT(ask(turn(Game::kEightBall), stopped).front().makes.value, 0.5);
+    EXPECT_GT(ask(turn(&games::kEightBall), stopped).front().makes.value, 0.5);
     Scene moves = scene;
     moves.ball[1].velocity = {1.0, 0.0, 0.0};
-    EXPECT_NE(refusal(turn(Game::kEightBall), moves).find("moves"), std::string::npos);
+    EXPECT_NE(refusal(turn(&games::kEightBall), moves).find("moves"), std::string::npos);
     EXPECT_THROW(games::skill_by_name("wizard", kPoolRadius), std::invalid_argument);
 }
 
@@ -238,7 +238,7 @@ TEST(Player, BehindTheStringTheFirstBallLiesBeyondIt) {
                                {"3", {1.0, 1.9}},
                                {"9", {0.6, 2.2}},
                                {"8", {0.4, 1.6}}});
-    const State state = turn(Game::kEightBall, Group::kOpen, InHand::kHeadString);
+    const State state = turn(&games::kEightBall, Group::kOpen, InHand::kHeadString);
     EXPECT_EQ(games::legal(state, scene).first, (std::vector<std::string>{"3", "9"}));
     const std::vector<Advice> advice = ask(state, scene);
     EXPECT_NE(advice.front().ball, "2");
@@ -257,12 +257,12 @@ TEST(Player, FreshShotsDecideTheOrder) {
     };
     // The last nine: a pot wins.
     const std::vector<Advice> last =
-        ask(turn(Game::kNineBall), table({{"cue", {1.0957, 0.7790}}, {"9", {0.4726, 0.4549}}}));
+        ask(turn(&games::kNineBall), table({{"cue", {1.0957, 0.7790}}, {"9", {0.4726, 0.4549}}}));
     EXPECT_EQ(last.front().kind, ShotKind::kPot);
     ordered(last);
     // A ball frozen to the rail is a pot, and no kick or bank.
     const std::vector<Advice> rail =
-        ask(turn(Game::kNineBall), table({{"cue", {0.5, 1.4}}, {"8", {0.0287, 2.0}}, {"9", {0.9, 0.8}}}));
+        ask(turn(&games::kNineBall), table({{"cue", {0.5, 1.4}}, {"8", {0.0287, 2.0}}, {"9", {0.9, 0.8}}}));
     EXPECT_EQ(rail.front().kind, ShotKind::kPot);
     EXPECT_LT(rail.front().fouls.value, 0.1);
     ordered(rail);
@@ -317,7 +317,7 @@ TEST(Player, PotsWithManyBallsOnTheTable) {
                                {"8", {0.19593, 1.55388}},
                                {"9", {0.58944, 2.32538}},
                                {"10", {0.66723, 2.05359}}});
-    const Advice best = ask(turn(Game::kTenBall, Group::kOpen, InHand::kAnywhere), scene).front();
+    const Advice best = ask(turn(&games::kTenBall, Group::kOpen, InHand::kAnywhere), scene).front();
     EXPECT_EQ(best.ball, "2");
     EXPECT_GT(best.makes.value, 0.8);
 }
@@ -325,8 +325,8 @@ TEST(Player, PotsWithManyBallsOnTheTable) {
 // Keeping the turn with the same balls left is worth more than giving it away, and a good place more than
 // none.
 TEST(Player, AValueRisesWithTheTurnAndTheChance) {
-    for (const Game game : {Game::kNineBall, Game::kTenBall}) {
-        const int last = game == Game::kNineBall ? 9 : 10;
+    for (const Game game : {&games::kNineBall, &games::kTenBall}) {
+        const int last = game == &games::kNineBall ? 9 : 10;
         for (int balls = 1; balls <= last; ++balls) {
             Places places;
             for (int k = 0; k < balls; ++k) {
@@ -352,7 +352,7 @@ TEST(Player, TrialsDrawTheTable) {
     EXPECT_GT(skill.unknown.cloth, 0.0);
     const auto most = [&](const games::Unknown& unknown) {
         skill.unknown = unknown;
-        return games::advise(turn(Game::kEightBall), scene, skill, kernel::best_isa()).front().makes.value;
+        return games::advise(turn(&games::kEightBall), scene, skill, kernel::best_isa()).front().makes.value;
     };
     EXPECT_GT(most(games::kExactTable), 0.95);
     EXPECT_LT(most({.cloth = 0.0, .rails = 0.0, .places = 5e-3}), 0.8);
@@ -376,7 +376,7 @@ TEST(Player, AChanceFallsWithDistanceCutAndError) {
 
 // The front ball's number depends on the rack.
 TEST(Player, TheBreakHitsTheFrontBallFirst) {
-    for (const Game game : {Game::kEightBall, Game::kNineBall, Game::kTenBall}) {
+    for (const Game game : {&games::kEightBall, &games::kNineBall, &games::kTenBall}) {
         for (const std::uint64_t seed : {1, 2, 3, 777}) {
             const Scene rack = nine_foot_rack(game, seed);
             const Scene shot = games::scene_with(rack, ask(games::new_game(game), rack).front());
@@ -398,7 +398,7 @@ TEST(Player, TheBreakKeepsTheTurnOnEveryTable) {
     constexpr int kRacks = 40;
     const Skill skill = games::skill_by_name("professional", kPoolRadius);
     for (const char* table : {"seven_foot", "seven_foot_bar", "eight_foot", "nine_foot", "ten_foot"})
-        for (const Game game : {Game::kEightBall, Game::kNineBall, Game::kTenBall})
+        for (const Game game : {&games::kEightBall, &games::kNineBall, &games::kTenBall})
             EXPECT_GT(breaks_kept(table, game, skill, kRacks, 40001), 0.4 * kRacks)
                 << table << " " << name(game);
 }
@@ -414,7 +414,7 @@ TEST(Player, CorrectedAimsPotDistantCuts) {
             return Vec2(x, random.uniform(low, high));
         };
         const Vec2 cue = place(0.2, 0.5), three = place(1.0, 1.5);
-        made += ask(turn(Game::kEightBall, Group::kSolids),
+        made += ask(turn(&games::kEightBall, Group::kSolids),
                     table({{"cue", cue}, {"3", three}, {"8", {0.1, 0.1}}}))
                     .front()
                     .makes.value;
@@ -427,13 +427,13 @@ TEST(Player, TheCueClearsObstacles) {
     // The cue ball is at the head rail, with a ball right behind it for a shot across the table.
     const Scene scene =
         table({{"cue", {0.6, 0.03}}, {"9", {0.54, 0.03}}, {"3", {0.9, 0.4}}, {"8", {0.4, 2.2}}});
-    for (const Advice& a : ask(turn(Game::kEightBall, Group::kSolids), scene))
+    for (const Advice& a : ask(turn(&games::kEightBall, Group::kSolids), scene))
         EXPECT_EQ(room_for(scene, a.cue).in, "") << games::words_of(a, scene.table);
 }
 
 TEST(Player, RacksEnd) {
     const Skill beginner = games::skill_by_name("beginner", kPoolRadius);
-    for (const Game game : {Game::kEightBall, Game::kNineBall}) {
+    for (const Game game : {&games::kEightBall, &games::kNineBall}) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             int shots = 0;
             const int winner = play_rack(game, {beginner, beginner}, {adviser(beginner), adviser(beginner)},

@@ -13,6 +13,7 @@
 #include "carom/games/rules.h"
 #include "carom/games/shot.h"
 #include "carom/kernel/splitmix64.h"
+#include "made_record.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {
@@ -144,8 +145,8 @@ class RandomPlayers {
             "carom\"\n[rack]\ngame = \"three_cushion\"\n[balls]\npreset = \"carom\"\n",
             "snooker\"\n[rack]\ngame = \"snooker\"\n[balls]\npreset = \"snooker\"\n",
             "carom\"\n[balls]\npreset = \"carom\"\n[[ball]]\nid = \"1\"\nposition = [0.7, 2.0]\n"};
-        std::string text = "[table]\npreset = \"" + std::string(kScenes[static_cast<int>(game_)]);
-        if (game_ != Game::kThreeCushion) text += "[[ball]]\nid = \"cue\"\nposition = [0.75, 0.5]\n";
+        std::string text = "[table]\npreset = \"" + std::string(kScenes[number_of(game_)]);
+        if (game_ != &games::kThreeCushion) text += "[[ball]]\nid = \"cue\"\nposition = [0.75, 0.5]\n";
         scene_ = parse_scene(text, "rack");
         ++racks;
     }
@@ -176,7 +177,7 @@ class RandomPlayers {
         games::Call call = {target, "p" + std::to_string(1 + random_.below(6)), random_.below(10) == 0,
                             random_.below(2) == 0};
         if (scene_.table.pockets.empty()) call.pocket.clear();
-        call.push_out &= game_ == Game::kNineBall || game_ == Game::kTenBall;
+        call.push_out &= game_ == &games::kNineBall || game_ == &games::kTenBall;
         const Record record = simulate(plan_of(scene_));
         const Verdict verdict = judge(state_, record, call);
         check(record, verdict);
@@ -208,8 +209,8 @@ class RandomPlayers {
 
     void check(const Record& record, const Verdict& verdict) {
         ASSERT_FALSE(verdict.options.empty());
-        EXPECT_EQ(verdict.options.size() > 1 && game_ != Game::kSnooker,
-                  verdict.chooser >= 0 && game_ != Game::kSnooker);
+        EXPECT_EQ(verdict.options.size() > 1 && game_ != &games::kSnooker,
+                  verdict.chooser >= 0 && game_ != &games::kSnooker);
         const Shot shot = shot_of(record);
         for (const Option& option : verdict.options) {
             // Only lost balls are respotted, or touching ones in three-cushion; once each.
@@ -220,12 +221,11 @@ class RandomPlayers {
                             option.decision == games::Decision::kSpotTouching);
             }
             // After a foul the turn passes unless the opponent chooses otherwise.
-            const bool final = option.state.over || verdict.chooser >= 0 || game_ == Game::kSnooker;
+            const bool final = option.state.over || verdict.chooser >= 0 || game_ == &games::kSnooker;
             EXPECT_TRUE(verdict.fouls.empty() || final || option.state.turn != state_.turn);
             respots += static_cast<int>(option.respots.size());
         }
-        for (const games::Foul foul : verdict.fouls)
-            EXPECT_STRNE(games::rule_of(game_, foul), "") << name(foul);
+        for (const games::CalledFoul& called : verdict.fouls) EXPECT_NE(called.rule, "") << name(called.foul);
         fouls += !verdict.fouls.empty();
         choices += verdict.options.size() > 1;
         points += verdict.points;
@@ -251,17 +251,17 @@ TEST_P(RandomGames, ContinueToLegalScenesUntilTheyEnd) {
         choices += players.choices;
         points += players.points;
     }
-    EXPECT_TRUE(over > 3 || game == Game::kSnooker || game == Game::kThreeCushion) << over;
+    EXPECT_TRUE(over > 3 || game == &games::kSnooker || game == &games::kThreeCushion) << over;
     EXPECT_GT(fouls, 5);
     EXPECT_GT(points, 5);
-    EXPECT_TRUE(choices > 3 || game == Game::kSumToThree || game == Game::kThreeCushion) << choices;
+    EXPECT_TRUE(choices > 3 || game == &games::kSumToThree || game == &games::kThreeCushion) << choices;
     // The eight hardly ever falls on a break.
-    EXPECT_TRUE(respots > 3 || game == Game::kEightBall) << respots;
+    EXPECT_TRUE(respots > 3 || game == &games::kEightBall) << respots;
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, RandomGames,
-                         ::testing::Values(Game::kEightBall, Game::kNineBall, Game::kThreeCushion,
-                                           Game::kSnooker, Game::kSumToThree),
+                         ::testing::Values(&games::kEightBall, &games::kNineBall, &games::kThreeCushion,
+                                           &games::kSnooker, &games::kSumToThree),
                          [](const auto& of) { return std::string(name(of.param)); });
 
 }  // namespace

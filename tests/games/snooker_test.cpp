@@ -38,7 +38,7 @@ Told snooker_table(int reds, const std::vector<std::string>& colours = kAllColou
 }
 
 State on(BallOn ball) {
-    State state = games::new_game(Game::kSnooker);
+    State state = games::new_game(&games::kSnooker);
     state.opening = false;
     state.in_hand = InHand::kNo;
     state.on = ball;
@@ -138,7 +138,7 @@ TEST(Snooker, AfterAFoulBallsReturnAndTheOpponentMayLetTheStrikerPlayAgain) {
 }
 
 TEST(Snooker, InHandTheCueBallIsInTheD) {
-    const State opening = games::new_game(Game::kSnooker);
+    const State opening = games::new_game(&games::kSnooker);
     EXPECT_EQ(opening.in_hand, InHand::kD);
     Told told("snooker");
     told.ball("cue", 0.889, 0.75)

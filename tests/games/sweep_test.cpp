@@ -71,7 +71,7 @@ TEST(Sweep, ColumnsHaveTheirKindsAndValues) {
 TEST(Sweep, AMeasureThatDoesNotApplyIsNamed) {
     const std::vector<std::string> measures = {"foul"};
     const Sweep sweep(Variation::from_text(test::kSmallScene, "s.toml", {"cue.speed=uniform(1,2)"}, 1),
-                      measures, Game::kEightBall);
+                      measures, &games::kEightBall);
     Batch batch(2, 2);
     try {
         sweep.play(0, 2, kernel::best_isa(), {}, batch.arrays());

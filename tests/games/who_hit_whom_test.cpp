@@ -37,7 +37,7 @@ TEST(WhoHitWhom, TwoBallsAlmostAtOnce) {
                                      "[[ball]]\nid = \"yellow\"\nposition = [0.63085, " +
                                      std::to_string(0.953260562332743 + later) + "]\n");
         EXPECT_EQ(met(record), "red yellow ") << later;
-        games::State state = games::new_game(games::Game::kStraightRail);
+        games::State state = games::new_game(&games::kStraightRail);
         state.opening = false;
         EXPECT_EQ(games::judge(state, record, {}).points, 1) << later;
     }
@@ -53,7 +53,7 @@ constexpr const char* kFrozen =
 TEST(WhoHitWhom, AFrozenBallThatIsNotPushedIsNotHit) {
     const Record record = played(std::string(kFrozen) + "aim_deg = 50\n");
     EXPECT_EQ(met(record), "9 ");
-    games::State state = games::new_game(games::Game::kNineBall);
+    games::State state = games::new_game(&games::kNineBall);
     state.opening = false;
     EXPECT_FALSE(games::judge(state, record, {}).fouls.empty());
     EXPECT_EQ(met(played(std::string(kFrozen) + "aim_deg = 130\n")), "1 9 ");

@@ -140,20 +140,20 @@ def test_numbers_out_of_range_are_refused_with_the_range():
     places = {"cue": [0.3, 0.3], "1": [0.3, 0.6], "9": [0.7, 1.0]}
     balls = [{"id": ball, "position": place} for ball, place in places.items()]
     scene = carom.Scene(ball=balls, cue={"speed": 1.0})
-    wanted = "is out of range; it must be 0 to 1000000000"
+    wanted = "expected a whole number from (0|-1000000000) to 1000000000"
     record, state = carom.simulate(scene), games.new_game("nine_ball")
     for number in (10**9 + 1, 2**31 - 1, 2**31, 2**63, 2**70, -1, -(2**31) - 1):
-        with pytest.raises(ValueError, match=f"^target = {number} {wanted}$"):
+        with pytest.raises(ValueError, match=f"^state.target: {wanted}$"):
             games.new_game("three_cushion", target=number)
         for wrong in (
             {"points": (number, 0)}, {"points": (0, number)}, {"fouls": (0, number)}, {"target": number}):
             for call in (lambda state: games.judge(state, record), lambda state: games.legal(state, scene)):
-                with pytest.raises(ValueError, match=f"{next(iter(wrong))} = {number} {wanted}"):
+                with pytest.raises(ValueError, match=rf"^state\.{next(iter(wrong))}(\[[01]\])?: {wanted}$"):
                     call(state._replace(**wrong))
     for number in (2, -1, 2**31, -(2**70)):
-        with pytest.raises(ValueError, match="0 or 1"):
+        with pytest.raises(ValueError, match=r"^state\.turn: expected a whole number from 0 to 1$"):
             games.new_game("snooker", first=number)
-        with pytest.raises(ValueError, match="0 or 1"):
+        with pytest.raises(ValueError, match=r"^state\.turn: expected a whole number from 0 to 1$"):
             games.judge(state._replace(turn=number), record)
 
 
@@ -181,10 +181,10 @@ def test_a_verdict_belongs_to_one_record():
         with pytest.raises(ValueError, match="the verdict belongs to another record"):
             games.next_scene(of_another, verdict, place=(0.7, 0.5))
     assert games.may_place(record, pickle.loads(pickle.dumps(option)), (0.7, 0.5))
-    # An option is a tuple of three; a hand-made one belongs to any record that has its balls.
-    decision, state, respots = option
+    # A hand-made one belongs to any record that has its balls.
+    decision, state, respots, *_ = option
     mine = games.Option(decision, state, respots)
-    assert mine == option and hash(mine[0]) == hash(option.decision) and mine.rerack is False
+    assert mine[:3] == option[:3] and hash(mine[0]) == hash(option.decision) and mine.rerack is False
     assert games.may_place(other, mine, (0.7, 0.5))
     with pytest.raises(ValueError, match='the record has no ball "cue"; give the record that'):
         games.may_place(one, mine, (0.7, 0.5))
@@ -330,10 +330,11 @@ def test_an_impossible_aim_says_why():
 
 def test_fields_of_the_wrong_type_are_named():
     state, scene = games.new_game("nine_ball"), carom.Scene(rack="nine_ball", ball=[{"position": [0.6, 0.5]}])
-    for wrong, message in (({"turn": "x"}, "turn: expected a whole number"),
-                           ({"points": (1, "a")}, "points: expected"), ({"rules": (1,)}, "rules: expected")):
-        with pytest.raises(TypeError, match=message):
+    for wrong, message in (({"turn": "x"}, "turn: expected a whole number from 0 to 1"),
+                           ({"points": (1, "a")}, r"points\[1\]: expected a whole number"),
+                           ({"rules": (1,)}, r"rules\[0\]: expected a text"), ({"over": scene}, "over: ")):
+        with pytest.raises(ValueError, match=rf"^state\.{message}"):
             games.legal(state._replace(**wrong), scene)
     record = carom.simulate(scene.replace(cue={"speed": 1, "aim_deg": 90, "offset": [0, 0]}))
-    with pytest.raises(TypeError, match="ball: expected a string"):
+    with pytest.raises(ValueError, match=r"^call\.ball: expected a text$"):
         games.judge(state, record, games.Call(ball=3))  # type: ignore[arg-type]

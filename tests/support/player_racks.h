@@ -29,7 +29,7 @@ struct RackShot {
 };
 
 inline Scene pool_rack(const std::string& table, games::Game game, std::uint64_t seed) {
-    const std::string more = game == games::Game::kNineBall ? "spot_ball = 9\n" : "";
+    const std::string more = game == &games::kNineBall ? "spot_ball = 9\n" : "";
     return parse_scene("[table]\npreset = \"" + table + "\"\n[balls]\npreset = \"pool\"\n[rack]\ngame = \"" +
                            std::string(name(game)) + "\"\nseed = " + std::to_string(seed % 1000000007) +
                            "\n" + more + "[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n[cue]\n",

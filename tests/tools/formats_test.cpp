@@ -9,6 +9,7 @@
 #include <regex>
 #include <string>
 
+#include "carom/interface/shape.h"
 #include "support/pages.h"
 
 namespace carom::tools {
@@ -37,6 +38,16 @@ TEST(Formats, ThePageOfSceneFilesMatchesTheProgram) {
     const auto blocks = std::distance(std::sregex_iterator(printed.begin(), printed.end(), block), {});
     EXPECT_EQ(blocks, 11);
     EXPECT_EQ(printed.rfind("# Scene format\n", 0), 0u);
+}
+
+TEST(Formats, TheTypesOfTheInterfaceMatchTheirRows) {
+    EXPECT_TRUE(test::read_source("docs/reference/types.md") == interface::types_page())
+        << "docs/reference/types.md" << kStale;
+    const std::string classes = test::read_source("python/carom/_types.py"),
+                      printed = interface::types_for_python();
+    const std::regex block("# begin (\\w+)\n[^]*?# end \\1\n");
+    for (std::sregex_iterator it(printed.begin(), printed.end(), block), end; it != end; ++it)
+        EXPECT_NE(classes.find(it->str()), classes.npos) << "python/carom/_types.py: " << (*it)[1] << kStale;
 }
 
 }  // namespace

@@ -24,7 +24,9 @@ loader.exec_module(release)
 READ = {name for name, _ in release.PLACES} | {"CHANGELOG.md", release.PROMISED, "capi/include/carom/carom.h",
                                                "web/npm/index.d.ts", "docs/reference/record.schema.json",
                                                "tests/data/engine/golden_hashes.json",
-                                               "games/src/rule_options.cpp"}
+                                               *(f"games/src/{game}.cpp" for game in (
+                                                   "eight_ball", "nine_ball", "ten_ball", "snooker",
+                                                   "carom_games"))}
 
 
 class Release(unittest.TestCase):
@@ -108,9 +110,9 @@ class Release(unittest.TestCase):
         self.one_fault("index.d.ts no longer declares")
 
     def test_a_new_option_of_a_rule_is_no_fault_but_a_new_default_is(self):
-        self.change("games/src/rule_options.cpp", r'\{"fair", "foul"\}', '{"fair", "foul", "rerack"}')
+        self.change("games/src/eight_ball.cpp", r'\{"fair", "foul"\}', '{"fair", "foul", "rerack"}')
         self.assertEqual(release.faults_of(self.root), [])
-        self.change("games/src/rule_options.cpp", r'\{"all", "eight", "none"\}', '{"eight", "all", "none"}')
+        self.change("games/src/eight_ball.cpp", r'\{"all", "eight", "none"\}', '{"eight", "all", "none"}')
         self.assertTrue(any("EightBall: call = all (default)" in f for f in release.faults_of(self.root)))
 
     def test_removing_npms_program_is_a_fault(self):

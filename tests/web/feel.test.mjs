@@ -272,7 +272,7 @@ test("messages concern this shot and include the engine's warnings", skip, async
 
 test("every game begins with its table, its balls and its score", skip, async () => {
   await player.open();
-  const names = await value("modules['tables.js'].GAMES.map(([name]) => name).filter((name) => name)");
+  const names = await value("caromPlay.state.page.games.map(({name}) => name)");
   assert.equal(names.length, 11);
   for (const name of names) {
     await value(`caromPlay.newGame("${name}", {players: ["", ""], hints: false, rules: {}})`);

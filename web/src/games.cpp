@@ -5,21 +5,22 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/game_state.h"
 #include "base/verdict.h"
 #include "carom/engine/batch.h"
 #include "carom/games/noise.h"
 #include "carom/games/player.h"
 #include "carom/games/rules.h"
+#include "carom/interface/shape.h"
 #include "web.h"
 
 namespace carom::web {
 namespace {
 
 games::State state_at(const char* text, std::size_t size) {
-    return tools::parse_state(std::string(text, size), "the state");
+    return interface::read_as<games::State>(Json::parse(text, text + size, nullptr, false), "state");
 }
 
 games::Call call_at(const char* text, std::size_t size) {
@@ -45,8 +46,8 @@ void give_scene(Scene scene) {
 
 CAROM_WEB int carom_game_new(const char* name, std::size_t size, int first, int target) {
     return guarded([&] {
-        const games::Game game = tools::game_of(std::string(name, size));
-        give(nullptr, dumped(tools::state_json(games::new_game(game, first, target))));
+        const games::Game game = games::game_named(std::string_view(name, size));
+        give(nullptr, dumped(interface::value_of(games::new_game(game, first, target))));
     });
 }
 /// @param rules a list of options: ["call=eight"]
@@ -56,19 +57,11 @@ CAROM_WEB int carom_game_rules(const char* state, std::size_t size, const char* 
         games::State with = state_at(state, size);
         for (const Json& option : Json::parse(rules, rules + rules_size))
             games::set_rule(with, option.get<std::string>());
-        give(nullptr, dumped(tools::state_json(with)));
+        give(nullptr, dumped(interface::value_of(with)));
     });
 }
 CAROM_WEB int carom_game_options() {
-    return guarded([&] {
-        Json list = Json::array();
-        for (const games::RuleOption& option : games::rule_options())
-            list.push_back({{"game", name(option.game)},
-                            {"key", option.key},
-                            {"values", option.values},
-                            {"what", option.what}});
-        give(nullptr, dumped(list));
-    });
+    return guarded([&] { give(nullptr, dumped(interface::value_of(games::rule_options()))); });
 }
 CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebScene* scene) {
     return guarded([&] {
@@ -79,7 +72,7 @@ CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebSce
                               {"callable", legal.callable},
                               {"inHand", name(legal.in_hand)},
                               {"mayPushOut", legal.may_push_out},
-                              {"text", tools::next_text(before)}}));
+                              {"text", games::next_text(before)}}));
     });
 }
 CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size_t size, const char* call,
@@ -88,13 +81,7 @@ CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size
         const games::State before = state_at(state, size);
         auto verdict = std::make_unique<WebVerdict>();
         verdict->verdict = games::judge(before, shot->record, call_at(call, call_size));
-        auto json = tools::verdict_json(verdict->verdict, before.game);
-        for (std::size_t i = 0; i < verdict->verdict.options.size(); ++i) {
-            const games::Option& option = verdict->verdict.options[i];
-            json["options"][i]["text"] = tools::next_text(option.state);
-            json["options"][i]["rerack"] = option.rerack();
-        }
-        std::string text = dumped(json);
+        std::string text = dumped(interface::value_of(verdict->verdict));
         give(verdict.release(), std::move(text));
     });
 }

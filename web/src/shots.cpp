@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/game_state.h"
 #include "base/shown_units.h"
 #include "base/verdict.h"
 #include "carom/engine/batch.h"
@@ -145,7 +144,7 @@ CAROM_WEB int carom_shot_measure(const WebShot* shot, const char* text, std::siz
                                  std::size_t game_size) {
     return guarded([&] {
         std::optional<games::Game> of;
-        if (game_size > 0) of = tools::game_of(std::string(game, game_size));
+        if (game_size > 0) of = games::game_named(std::string_view(game, game_size));
         const games::Measure measure(std::string(text, size), shot->scene, of);
         give(nullptr, dumped(tools::measure_json(measure, shot->record)));
     });

@@ -39,12 +39,12 @@ struct BreakStroke {
 // By carom solve and carom break for a rack with the default gaps and errors of --hand
 // aim=0.125,speed=1%,tip=0.0175: 78, 77, 68, 92, 51 and 62 % of fresh shots are legal and pot a ball.
 constexpr BreakStroke kBreaks[] = {
-    {Game::kEightBall, 2.54, 0.2722, 0.2428, -0.0075, 8.414, 0.152},
-    {Game::kNineBall, 1.9812, 0.7601, 0.1964, -0.2716, 7.060, 0.135},
-    {Game::kNineBall, 2.3368, 0.8803, 0.2483, -0.1177, 6.971, 0.056},
-    {Game::kNineBall, 2.54, 0.0455, 0.1881, 0.3860, 4.812, 0.109},
-    {Game::kNineBall, 2.8448, 0.1480, 0.2335, 0.1807, 6.436, 0.013},
-    {Game::kTenBall, 2.54, 0.0725, 0.2321, -0.0138, 5.926, 0.034},
+    {&kEightBall, 2.54, 0.2722, 0.2428, -0.0075, 8.414, 0.152},
+    {&kNineBall, 1.9812, 0.7601, 0.1964, -0.2716, 7.060, 0.135},
+    {&kNineBall, 2.3368, 0.8803, 0.2483, -0.1177, 6.971, 0.056},
+    {&kNineBall, 2.54, 0.0455, 0.1881, 0.3860, 4.812, 0.109},
+    {&kNineBall, 2.8448, 0.1480, 0.2335, 0.1807, 6.436, 0.013},
+    {&kTenBall, 2.54, 0.0725, 0.2321, -0.0138, 5.926, 0.034},
 };
 
 std::vector<std::string> player_games() {

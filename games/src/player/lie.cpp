@@ -48,7 +48,7 @@ constexpr double kLeft = 0.5;
 
 /// The ball that wins the game.
 int money_ball(Game game) {
-    return game == Game::kEightBall ? 8 : game == Game::kNineBall ? 9 : 10;
+    return game == &kEightBall ? 8 : game == &kNineBall ? 9 : 10;
 }
 
 /// The chances to win [-] from a good place for the ball after this one, and of the opponent who shoots from
@@ -289,7 +289,7 @@ std::pair<int, double> Potting::surest(const State& state, const Lie& lie) const
 }
 
 std::array<double, Potting::kFeatures> Potting::features(const State& state, const Lie& lie) const {
-    const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
+    const bool eight = state.game == &kEightBall, in_hand = state.in_hand != InHand::kNo;
     const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
     const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine, !eight);
     double best = 0.0;
@@ -329,7 +329,7 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
 double Potting::value(const State& state, const Lie& lie) const {
     if (lie.balls.empty()) return 0.0;
     const std::array<double, kFeatures> features = this->features(state, lie);
-    const auto& weights = state.game == Game::kEightBall ? kWorthEightBall : kWorthRotation;
+    const auto& weights = state.game == &kEightBall ? kWorthEightBall : kWorthRotation;
     double x = 0.0;
     for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
     return 1.0 / (1.0 + exponential(-x));

@@ -4,19 +4,14 @@ Pure functions, the same as in C++ (`carom/games/*.h`). A game is a loop: `new_g
 `legal`, `carom.simulate`, `judge`, a choice among the verdict's options, and `next_scene`.
 """
 
+from carom._types import Call, Foul, GameInfo, Legal, Respot, RuleOption, State, Verdict
 from carom.games._aim import Aim, PocketLine, aim_pot, bank_routes, cut_angle_deg, ghost_ball, pocket_lines
 from carom.games._noise import STRIKE, Noise, noisy
 from carom.games._player import SKILLS, Advice, Cue, Player, PlayerShot, advise
 from carom.games._rules import (
     GAMES,
-    Call,
-    Foul,
-    Legal,
     Option,
-    Respot,
-    RuleOption,
-    State,
-    Verdict,
+    all_games,
     book_of,
     judge,
     legal,
@@ -36,6 +31,7 @@ __all__ = [
     "Call",
     "Cue",
     "Foul",
+    "GameInfo",
     "Legal",
     "Noise",
     "Option",
@@ -48,6 +44,7 @@ __all__ = [
     "Verdict",
     "advise",
     "aim_pot",
+    "all_games",
     "bank_routes",
     "book_of",
     "cut_angle_deg",

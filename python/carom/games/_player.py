@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from carom import _carom
 from carom._arguments import checked
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
+from carom._types import Call, State
 from carom.games._noise import Noise, noisy
-from carom.games._rules import Call, State, _fitting
 
 #: The levels of a player, the weakest first.
 SKILLS: tuple[str, ...] = tuple(_carom.skills())
@@ -60,9 +60,9 @@ def advise(
     """
     if best < 1 or shots < 0 or threads < 0:
         raise ValueError("best must be at least 1, shots and threads at least 0")
-    rows = _carom.advise(_fitting(state), as_scene(scene)._native, skill, seed, best, shots, threads)
+    rows = _carom.advise(state, as_scene(scene)._native, skill, seed, best, shots, threads)
     return [
-        Advice(*row[:5], Cue(*row[5][:3], (row[5][3], row[5][4])), Call(*row[6]), *row[7:]) for row in rows]
+        Advice(*row[:5], Cue(*row[5][:3], (row[5][3], row[5][4])), row[6], *row[7:]) for row in rows]
 
 
 class PlayerShot(NamedTuple):

@@ -85,6 +85,8 @@ test("in a game only the cue ball is moved, in hand, where the rules allow it", 
 
 test("a game needs its table", (t) => {
   const {state} = freshState(), asked = [];
+  state.page.games = [["eight_ball", "nine_foot"], ["three_cushion", "carom"], ["snooker", "snooker"]].map(
+    ([name, table]) => ({name, table, start: "x = 0.5w", usual_target: 0}));
   begin(state, START);
   t.mock.method(carom.Scene, "parse", (toml) => {
     asked.push(/preset = "(\w+)"/.exec(toml)[1]);

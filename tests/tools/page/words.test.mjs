@@ -28,11 +28,11 @@ test("contacts are types of events", () => {
 });
 
 test("verdicts in a sentence", () => {
-  assert.equal(verdictWords({fouls: [], points: 1}, "snooker"), "Fair shot, 1 point.");
-  assert.equal(verdictWords({fouls: [], points: 1}, "nine_ball"), "Fair shot.");
-  assert.equal(verdictWords({fouls: [{foul: "miss"}], points: 0, penalty: 4}, "snooker"),
+  assert.equal(verdictWords({fouls: [], points: 1}, {is_scored: true}), "Fair shot, 1 point.");
+  assert.equal(verdictWords({fouls: [], points: 1}, {is_scored: false}), "Fair shot.");
+  assert.equal(verdictWords({fouls: [{foul: "miss"}], points: 0, penalty: 4}, {is_scored: true}),
     "Foul: miss; 4 points to the other player.");
-  assert.equal(verdictWords({fouls: [{foul: "no rail", rule: "6.3"}, {foul: "scratch"}], points: 2}),
+  assert.equal(verdictWords({fouls: [{foul: "no rail", rule: "6.3"}, {foul: "scratch"}], points: 2}, {}),
     "Foul: no rail (6.3), scratch.");
 });
 

@@ -9,53 +9,12 @@
 #include <variant>
 #include <vector>
 
-#include "base/game_state.h"
 #include "carom/engine/math.h"
+#include "carom/interface/shape.h"
 
 namespace carom::tools {
 
 using Json = nlohmann::ordered_json;
-using games::InHand;
-using games::State;
-using games::Verdict;
-
-std::string foul_text(games::Game game, games::Foul foul) {
-    const std::string rule = games::rule_of(game, foul);
-    return carom::name(foul) + (rule.empty() ? "" : " (" + rule + ")");
-}
-
-std::string next_text(const State& state) {
-    if (state.over)
-        return state.winner < 0 ? "the game is over, nobody wins"
-                                : fmt::format("the game is over, player {} wins", state.winner + 1);
-    std::string text = fmt::format("player {} shoots", state.turn + 1);
-    if (state.in_hand == InHand::kAnywhere) text += ", cue ball in hand anywhere";
-    if (state.in_hand == InHand::kHeadString) text += ", cue ball in hand behind the head string";
-    if (state.in_hand == InHand::kD) text += ", cue ball in hand in the D";
-    if (state.game != games::Game::kSnooker) return text;
-    text += state.on == games::BallOn::kColour ? ", any colour on"
-                                               : fmt::format(", {} on", carom::name(state.on));
-    return text + (state.free_ball ? ", free ball" : "");
-}
-
-Json verdict_json(const Verdict& verdict, games::Game game) {
-    Json fouls = Json::array(), options = Json::array();
-    for (const games::Foul foul : verdict.fouls)
-        fouls.push_back({{"foul", carom::name(foul)}, {"rule", games::rule_of(game, foul)}});
-    for (const games::Option& option : verdict.options) {
-        Json respots = Json::array();
-        for (const games::Respot& back : option.respots)
-            respots.push_back({{"ball", back.ball}, {"place", {back.place.x(), back.place.y()}}});
-        options.push_back({{"decision", carom::name(option.decision)},
-                           {"state", state_json(option.state)},
-                           {"respots", respots}});
-    }
-    return {{"fouls", fouls},
-            {"points", verdict.points},
-            {"penalty", verdict.penalty},
-            {"chooser", verdict.chooser},
-            {"options", options}};
-}
 
 Json cue_json(const Cue& cue) {
     return {{"speed", cue.speed},
@@ -77,11 +36,7 @@ Json advice_json(const std::vector<games::Advice>& advice, const carom::Table& t
                         {"pocket", a.pocket},
                         {"cut_deg", a.cut_deg},
                         {"cue", cue_json(a.cue)},
-                        {"call",
-                         {{"ball", a.call.ball},
-                          {"pocket", a.call.pocket},
-                          {"safety", a.call.safety},
-                          {"push_out", a.call.push_out}}},
+                        {"call", interface::value_of(a.call)},
                         {"place", place},
                         {"makes", share(a.makes)},
                         {"fouls", share(a.fouls)},

@@ -11,15 +11,6 @@
 
 namespace carom::tools {
 
-/// "wrong ball first (WPA 6.2)"
-std::string foul_text(games::Game game, games::Foul foul);
-
-/// "player 2 shoots, cue ball in hand anywhere"
-std::string next_text(const games::State& state);
-
-/// The verdict of `carom judge --json`.
-nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
-
 /// A strike: {speed, aim_deg, elevation_deg, offset}.
 nlohmann::ordered_json cue_json(const carom::Cue& cue);
 

@@ -1,6 +1,6 @@
 // Rules of games: legal shots, and the outcome of a shot. Pure functions of a state, the balls and a record.
 //
-// book_of() names the published rules of each game.
+// GameInfo names the published rules of each game.
 //
 // Rules about facts that a record does not contain are not judged: feet, touched balls, double hits, pushes,
 // time.
@@ -15,28 +15,22 @@
 #include <vector>
 
 #include "carom/engine/record.h"
+#include "carom/engine/row.h"
 #include "carom/games/spots.h"
 
 namespace carom::games {
 
-enum class Game : std::uint8_t {
-    kEightBall,
-    kNineBall,
-    kThreeCushion,
-    kSnooker,
-    kSumToThree,
-    kTenBall,
-    kStraightPool,
-    kFreePyramid,
-    kStraightRail,
-    kOneCushion,
-    kFourBall
-};
-constexpr auto names_of(Game) {
-    return std::array{"eight_ball",    "nine_ball",   "three_cushion", "snooker",
-                      "sum_to_three",  "ten_ball",    "straight_pool", "free_pyramid",
-                      "straight_rail", "one_cushion", "four_ball"};
-}
+struct GameRules;
+/// A game is a pointer to its row, which stands in the file of its rules.
+using Game = const GameRules*;
+using carom::name;
+const char* name(Game game);
+/// All games, in the order of the numbers of carom_game in C.
+std::span<const Game> all_of(Game);
+/// @throws std::invalid_argument listing the known names
+Game game_named(std::string_view name);
+extern const GameRules kEightBall, kNineBall, kThreeCushion, kSnooker, kSumToThree, kTenBall, kStraightPool,
+    kFreePyramid, kStraightRail, kOneCushion, kFourBall;
 
 /// A player's balls in eight-ball.
 enum class Group : std::uint8_t { kOpen, kSolids, kStripes };
@@ -53,69 +47,136 @@ constexpr auto names_of(BallOn) {
 /// More points than any game has, and fewer than an int holds.
 inline constexpr int kMostPoints = 1000000000;
 
-/// Everything a game remembers between two shots, besides the positions of the balls. Players are 0 and 1. A
-/// game reads only its own fields.
+/// A game reads only its own fields.
 struct State {
-    Game game = Game::kEightBall;
-    int turn = 0;                  ///< whose shot it is
-    bool opening = true;           ///< the break, or the first shot of a carom game
-    InHand in_hand = InHand::kNo;  ///< where the player whose turn it is may place the cue ball
-    /// each at most kMostPoints, as are target and fouls; below 0 in straight pool and four-ball only
+    Game game = &kEightBall;
+    int turn = 0;
+    bool opening = true;
+    InHand in_hand = InHand::kNo;
     std::array<int, 2> points = {0, 0};
-    int target = 0;  ///< points that win; 0: no end
+    int target = 0;
     bool over = false;
-    int winner = -1;                                            ///< -1: none, or not yet
-    std::array<Group, 2> group = {Group::kOpen, Group::kOpen};  ///< eight-ball
-    bool may_push_out = false;  ///< nine-ball, ten-ball: this is the shot after the break
-    /// consecutive fouls of each player: nine-ball, ten-ball, straight pool; snooker: misses in a row with a
-    /// clear path to a full ball
+    int winner = -1;
+    std::array<Group, 2> group = {Group::kOpen, Group::kOpen};
+    bool may_push_out = false;
     std::array<int, 2> fouls = {0, 0};
-    BallOn on = BallOn::kRed;  ///< snooker
-    bool free_ball = false;    ///< snooker: any ball may be nominated as the ball on
-    std::uint32_t rules = 0;   ///< the options that set_rule() chose; 0: all defaults
+    BallOn on = BallOn::kRed;
+    bool free_ball = false;
+    std::vector<std::string> rules;
     bool operator==(const State&) const = default;
 };
+constexpr auto rows_of(const State*) {
+    return described(
+               "State",
+               "The memory of a game between two shots. Players are 0 and 1; a pair has a value for each.",
+               row<&State::game>("game", "The game.").needed(),
+               row<&State::turn>("turn", "Whose shot it is.", {0, 1}),
+               row<&State::opening>("opening", "The break, or the first shot of a carom game."),
+               row<&State::in_hand>("in_hand", "Of the cue ball: its area."),
+               row<&State::points>("points", "Below 0 in straight pool and four-ball.",
+                                   {-kMostPoints, kMostPoints}),
+               row<&State::target>("target", "Points that win; 0: no end.", {0, kMostPoints}),
+               row<&State::over>("over", "The game is over."),
+               row<&State::winner>("winner", "-1: none, or not yet.", {-1, 1}),
+               row<&State::group>("group", "Eight-ball."),
+               row<&State::may_push_out>("may_push_out", "Nine-ball, ten-ball: the shot after the break."),
+               row<&State::fouls>("fouls", "In a row; snooker: misses with a clear path to a full ball.",
+                                  {0, kMostPoints}),
+               row<&State::on>("on", "Snooker: the ball on; colour: any, after a red."),
+               row<&State::free_ball>("free_ball", "Snooker: any ball may be nominated."),
+               row<&State::rules>("rules", "Options that are not defaults, such as \"call=eight\"."))
+        .made_by_callers();
+}
+/// For readers of states: set_rule() for each of its rules. @throws std::invalid_argument
+void complete(State& state);
 
 /// A new game. @param first the player who begins @param target as in State::target; 0: the game's own, such
 /// as 8 in free pyramid
 State new_game(Game game, int first = 0, int target = 0);
 
-/// The published rules of a game, with their edition.
-const char* book_of(Game game);
-
-/// An option of a game's rules.
 struct RuleOption {
-    Game game;
-    const char* key;
-    std::vector<const char*> values;  ///< at most four; the first one is the default
-    const char* what;
+    Game game = &kEightBall;
+    std::string key;
+    std::vector<std::string> values;
+    std::string what;
+    bool operator==(const RuleOption&) const = default;
 };
-std::span<const RuleOption> rule_options();
+constexpr auto rows_of(const RuleOption*) {
+    return described("RuleOption", "An option of a game's rules.",
+                     row<&RuleOption::game>("game", "The game."), row<&RuleOption::key>("key", "Its name."),
+                     row<&RuleOption::values>("values", "The first one is the default."),
+                     row<&RuleOption::what>("what", "Its meaning."));
+}
+
+/// A game, without the functions of its rules.
+struct GameInfo {
+    std::string name, title{}, book{}, calls{};
+    bool is_scored = true, has_groups = false, has_safety = false, has_push_out = false;
+    int target = 0, usual_target = 0, balls = 15;
+    std::string table = "nine_foot", start{};
+    std::vector<RuleOption> options{};
+    bool operator==(const GameInfo&) const = default;
+};
+constexpr auto rows_of(const GameInfo*) {
+    return described(
+        "GameInfo", "A game.", row<&GameInfo::name>("name", "In files."),
+        row<&GameInfo::title>("title", "For people."),
+        row<&GameInfo::book>("book", "Its published rules, with their edition."),
+        row<&GameInfo::calls>("calls", "Announcements before a shot."),
+        row<&GameInfo::is_scored>("is_scored", "Players collect points."),
+        row<&GameInfo::has_groups>("has_groups", "Each player has a group of balls."),
+        row<&GameInfo::has_safety>("has_safety", "A safety may be called."),
+        row<&GameInfo::has_push_out>("has_push_out", "A push out may be called."),
+        row<&GameInfo::target>("target", "Points that win, if none are given; 0: no end."),
+        row<&GameInfo::usual_target>("usual_target", "A target to offer; 0: none."),
+        row<&GameInfo::balls>("balls", "Object balls of a full rack."),
+        row<&GameInfo::table>("table", "A table for it: a preset."),
+        row<&GameInfo::start>(
+            "start",
+            "Its first scene, without table and balls. Places are fractions of the width (w) and "
+            "the length (l) of the table; SEED is of the rack."),
+        row<&GameInfo::options>("options", "Of its rules."));
+}
+const GameInfo& info_of(Game game);
+/// Of all games.
+std::vector<RuleOption> rule_options();
 /// Chooses an option of the state's game, such as "call=eight". @throws std::invalid_argument for an unknown
 /// key or value; it lists the known ones
 void set_rule(State& state, std::string_view option);
-/// The chosen options that are not defaults, as set_rule() reads them.
-std::vector<std::string> chosen_rules(const State& state);
 
-/// An announcement before a shot. Snooker: `ball` is the nominated colour or free ball; if it is
-/// empty, the ball that is hit first.
 struct Call {
-    std::string ball;       ///< id, or ""
-    std::string pocket;     ///< id, "p1", ...
-    bool safety = false;    ///< eight-ball, ten-ball, straight pool: the turn ends whatever falls
-    bool push_out = false;  ///< nine-ball, ten-ball
+    std::string ball, pocket;
+    bool safety = false;
+    bool push_out = false;
     bool operator==(const Call&) const = default;
 };
+constexpr auto rows_of(const Call*) {
+    return described(
+               "Call", "An announcement before a shot.",
+               row<&Call::ball>("ball",
+                                "Id of the called ball. Snooker: the nominated colour or free ball; if \"\", "
+                                "the ball that is hit first."),
+               row<&Call::pocket>("pocket", "Id of the called pocket: \"p1\", ..."),
+               row<&Call::safety>("safety",
+                                  "Eight-ball, ten-ball, straight pool: the turn ends whatever falls."),
+               row<&Call::push_out>("push_out", "Nine-ball, ten-ball: a push out."))
+        .made_by_callers();
+}
 
-/// The rules of the next shot.
 struct Legal {
-    std::vector<std::string> cue_balls;  ///< ids that may be struck: one, in free pyramid any
-    std::vector<std::string> first;      ///< balls that the cue ball may hit first
-    std::vector<std::string> callable;   ///< balls that may be called; empty if the game has no calls
+    std::vector<std::string> cue_balls, first, callable;
     InHand in_hand = InHand::kNo;
     bool may_push_out = false;
     bool operator==(const Legal&) const = default;
 };
+constexpr auto rows_of(const Legal*) {
+    return described("Legal", "The rules of the next shot.",
+                     row<&Legal::cue_balls>("cue_balls", "That may be struck: one, in free pyramid any."),
+                     row<&Legal::first>("first", "That may be hit first."),
+                     row<&Legal::callable>("callable", "That may be called."),
+                     row<&Legal::in_hand>("in_hand", "As in the state."),
+                     row<&Legal::may_push_out>("may_push_out", "A push out may be called."));
+}
 
 /// @param balls ids of the balls on the table. The cue ball may be missing while it is in hand. Ids are those
 /// of racks: cue, 1 to 15; white, yellow, red (four-ball: red1, red2); snooker numbers its reds. @throws
@@ -167,15 +228,30 @@ constexpr auto names_of(Foul) {
                       "opponent's cue ball hit",
                       "touching ball played into"};
 }
-/// The rule that a foul breaks, such as "WPA 6.1"; "" if the game has no such rule.
-const char* rule_of(Game game, Foul foul);
 
-/// A ball that is respotted.
+struct CalledFoul {
+    Foul foul = Foul::kNoBallHit;
+    std::string rule{};
+    bool operator==(const CalledFoul&) const = default;
+};
+constexpr auto rows_of(const CalledFoul*) {
+    return described("Foul", "A foul, and the rule that it breaks.",
+                     row<&CalledFoul::foul>("foul", "Its name."),
+                     row<&CalledFoul::rule>("rule", "\"WPA 6.1\"; \"\" if the game has no such rule."));
+}
+
 struct Respot {
     std::string ball;
-    Vec2 place = Vec2::Zero();  ///< [m]
+    Vec2 place = Vec2::Zero();
     bool operator==(const Respot&) const = default;
 };
+constexpr auto rows_of(const Respot*) {
+    return described("Respot", "A ball that is respotted.", row<&Respot::ball>("ball", "Its id.").needed(),
+                     row<&Respot::place>("place", "[m]").needed());
+}
+
+/// The next shot in words: "player 2 shoots, cue ball in hand anywhere".
+std::string next_text(const State& state);
 
 /// How the game may continue.
 enum class Decision : std::uint8_t {
@@ -197,23 +273,40 @@ constexpr auto names_of(Decision) {
 
 struct Option {
     Decision decision = Decision::kPlayOn;
-    State state;                  ///< of the next shot
-    std::vector<Respot> respots;  ///< balls that are respotted before it
+    State state;
+    std::vector<Respot> respots;
     bool rerack() const { return decision == Decision::kRerack || decision == Decision::kRerackForOther; }
+    std::string text() const { return next_text(state); }
     bool operator==(const Option&) const = default;
 };
+constexpr auto rows_of(const Option*) {
+    return described("Option", "A possible continuation of the game.",
+                     row<&Option::decision>("decision", "The next step."),
+                     row<&Option::state>("state", "Of the next shot."),
+                     row<&Option::respots>("respots", "Before it."),
+                     row<&Option::rerack>("rerack", "The balls are racked again."),
+                     row<&Option::text>("text", "The next shot in words."));
+}
 
 struct Verdict {
-    std::vector<Foul> fouls;  ///< by rule; empty for a fair shot
-    int points = 0;           ///< scored by the shot
-    int penalty = 0;          ///< snooker: points for the other player
-    /// At least one. If there are several, the first one applies unless `chooser` chooses another.
+    std::vector<CalledFoul> fouls;
+    int points = 0;
+    int penalty = 0;
     std::vector<Option> options;
-    int chooser = -1;  ///< the player who chooses; -1 if there is one option
+    int chooser = -1;
     const State& next() const { return options.front().state; }
     const std::vector<Respot>& respots() const { return options.front().respots; }
     bool operator==(const Verdict&) const = default;
 };
+constexpr auto rows_of(const Verdict*) {
+    return described("Verdict", "The outcome of a shot.",
+                     row<&Verdict::fouls>("fouls", "Empty for a fair shot."),
+                     row<&Verdict::points>("points", "Scored by the shot."),
+                     row<&Verdict::penalty>("penalty", "Snooker: points for the other player."),
+                     row<&Verdict::options>(
+                         "options", "At least one; the first applies unless the chooser picks another."),
+                     row<&Verdict::chooser>("chooser", "A player; -1 with one option, or if lots decide."));
+}
 
 /// The outcome of a shot. @param state before it
 /// @throws std::invalid_argument for a record that does not end at rest, has no cue strike or lacks the

@@ -42,8 +42,8 @@ bool is_racked(games::Game game, const Scene& scene) {
     std::vector<Vec2> places;
     for (const BallStart& ball : scene.ball)
         if (ball.id != "cue") places.push_back(planar(ball.position));
-    const std::size_t full = game == games::Game::kNineBall ? 9 : game == games::Game::kTenBall ? 10 : 15;
-    return places.size() == full && std::all_of(places.begin(), places.end(), [&](const Vec2& place) {
+    return places.size() == static_cast<std::size_t>(games::info_of(game).balls) &&
+           std::all_of(places.begin(), places.end(), [&](const Vec2& place) {
                return std::any_of(places.begin(), places.end(), [&](const Vec2& other) {
                    const double apart = length(other - place);
                    return apart > 0.0 && apart < 2.0 * scene.balls.R + kGap;
@@ -58,13 +58,13 @@ State state_of(const AdviseArgs& args, const Scene& scene) {
         State state = read_state(args.state);
         if (!args.game.empty() && game_of(args.game) != state.game)
             throw UsageError(fmt::format("--game {}: the state in {} is of {}", args.game,
-                                         harmless(args.state), carom::name(state.game)));
+                                         harmless(args.state), name(state.game)));
         return state;
     }
     State state = games::new_game(game_of(args.game.empty() ? "eight_ball" : args.game));
-    if (!args.group.empty() && state.game != games::Game::kEightBall)
+    if (!args.group.empty() && !games::info_of(state.game).has_groups)
         throw UsageError(
-            fmt::format("--group {}: {} has no groups; leave it out", args.group, carom::name(state.game)));
+            fmt::format("--group {}: {} has no groups; leave it out", args.group, name(state.game)));
     if (args.group.empty() && args.in_hand.empty() && is_racked(state.game, scene)) return state;
     state.opening = false;
     state.in_hand = args.in_hand.empty()         ? games::InHand::kNo

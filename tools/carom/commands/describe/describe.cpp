@@ -13,6 +13,7 @@
 #include "base/options.h"
 #include "carom/engine/event_details.h"
 #include "carom/games/measures.h"
+#include "carom/interface/shape.h"
 #include "commands/describe/formats.h"
 
 namespace carom::tools {
@@ -327,13 +328,13 @@ std::string measures_text() {
 std::string games_text() {
     std::string out =
         "Games of carom judge --game, with the options of --rules. The first value is the default.\n";
-    for (std::size_t i = 0; i < games::names_of(games::Game{}).size(); ++i) {
-        const auto game = static_cast<games::Game>(i);
-        out += fmt::format("\n{:<16}{}\n", name(game), games::book_of(game));
-        for (const games::RuleOption& option : games::rule_options())
-            if (option.game == game)
-                out += fmt::format("  {} = {}\n      {}\n", option.key, fmt::join(option.values, " | "),
-                                   option.what);
+    for (const games::Game game : games::all_of(games::Game{})) {
+        const games::GameInfo& info = games::info_of(game);
+        out += fmt::format("\n{:<16}{}\n", info.name, info.book);
+        if (!info.calls.empty()) out += fmt::format("  calls: {}\n", info.calls);
+        for (const games::RuleOption& option : info.options)
+            out += fmt::format("  {} = {}\n      {}\n", option.key, fmt::join(option.values, " | "),
+                               option.what);
     }
     return out;
 }
@@ -363,6 +364,8 @@ constexpr struct {
                 {"scene-format", [](const Options&) { return scene_format(); }},
                 {"measures", [](const Options&) { return measures_text(); }},
                 {"games", [](const Options&) { return games_text(); }},
+                {"types", [](const Options&) { return interface::types_page(); }},
+                {"types-python", [](const Options&) { return interface::types_for_python(); }},
                 {"events", [](const Options&) { return events_text(); }}};
 
 struct DescribeArgs {

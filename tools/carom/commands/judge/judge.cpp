@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -21,12 +20,12 @@
 #include "carom/engine/event_details.h"
 #include "carom/engine/printable.h"
 #include "carom/games/rules.h"
+#include "carom/interface/shape.h"
 #include "report/table.h"
 
 namespace carom::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using games::Decision;
 using games::InHand;
 using games::State;
@@ -73,7 +72,7 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
         before = read_state(args.state);
         if (!args.game.empty() && game_of(args.game) != before.game)
             throw UsageError(fmt::format("--game {}: the state in {} is of {}", args.game,
-                                         harmless(args.state), carom::name(before.game)));
+                                         harmless(args.state), name(before.game)));
     } else {
         before = games::new_game(game_of(args.game));
     }
@@ -85,8 +84,7 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
         }
     }
     const games::Call call{args.ball, args.pocket, args.safety, args.push_out};
-    if (call.safety && before.game != games::Game::kEightBall && before.game != games::Game::kTenBall &&
-        before.game != games::Game::kStraightPool)
+    if (call.safety && !games::info_of(before.game).has_safety)
         throw UsageError(fmt::format("--safety: {} has no called safety; leave it out", name(before.game)));
     Verdict verdict = asked(shot, [&] { return games::judge(before, record, call); });
     const auto options = static_cast<int>(verdict.options.size());
@@ -101,15 +99,13 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
 
 std::string verdict_text(const Judged& judged) {
     const Verdict& verdict = judged.verdict;
-    const games::Game game = judged.option.state.game;
     std::string text = verdict.fouls.empty() ? "fair" : "foul";
-    for (std::size_t i = 0; i < verdict.fouls.size(); ++i)
-        text += (i == 0 ? ": " : ", ") + foul_text(game, verdict.fouls[i]);
+    for (const games::CalledFoul& called : verdict.fouls)
+        text += fmt::format("{}{}{}", text == "foul" ? ": " : ", ", name(called.foul),
+                            called.rule.empty() ? "" : " (" + called.rule + ")");
     text += "\n";
-    // Eight-ball, nine-ball and ten-ball are not scored: there a point says that the player continues.
-    const bool scored = verdict.points != 0 && game != games::Game::kEightBall &&
-                        game != games::Game::kNineBall && game != games::Game::kTenBall;
-    if (scored)
+    // In a game that is not scored, a point says that the player continues.
+    if (verdict.points != 0 && games::info_of(judged.option.state.game).is_scored)
         text += counted(static_cast<std::size_t>(std::abs(verdict.points)), "point") +
                 (verdict.points > 0 ? " scored\n" : " lost\n");
     if (verdict.penalty != 0)
@@ -119,7 +115,7 @@ std::string verdict_text(const Judged& judged) {
         const games::Option& option = verdict.options[i];
         if (verdict.options.size() > 1)
             text += fmt::format("  {}  {}: ", i + 1, carom::name(option.decision));
-        text += next_text(option.state) + "\n";
+        text += option.text() + "\n";
         const char* const indent = verdict.options.size() > 1 ? "     " : "";
         if (option.decision == Decision::kReplace) {
             text += fmt::format("{}every ball returns to its place before the shot\n", indent);
@@ -137,9 +133,8 @@ int run_judge(const JudgeArgs& args) {
         throw UsageError("no game is named; give --game or --state");
     const Record record = read_shot(args.shot, {});
     const Judged verdict = judged(args.shot, record, args.game);
-    write_report(args.game.state_out, state_json(verdict.option.state).dump(2) + "\n");
-    print(args.json ? verdict_json(verdict.verdict, verdict.option.state.game).dump() + "\n"
-                    : verdict_text(verdict));
+    write_report(args.game.state_out, interface::value_of(verdict.option.state).dump(2) + "\n");
+    print(args.json ? interface::value_of(verdict.verdict).dump() + "\n" : verdict_text(verdict));
     return kOk;
 }
 
@@ -194,9 +189,8 @@ int run_next(const NextArgs& args) {
         });
         ball = asked(args.scene, [&] { return games::struck_next(option.state, ids_of(next.ball)); });
         first = games::legal(option.state, next).first;
-        said += fmt::format("# {}: {}.\n", verdict.verdict.fouls.empty() ? "Fair" : "A foul",
-                            next_text(option.state));
-        write_report(args.game.state_out, state_json(option.state).dump(2) + "\n");
+        said += fmt::format("# {}: {}.\n", verdict.verdict.fouls.empty() ? "Fair" : "A foul", option.text());
+        write_report(args.game.state_out, interface::value_of(option.state).dump(2) + "\n");
     }
     next.cue.reset();
     if (plan.scene.cue && index_of(next.ball, ball) >= 0)

@@ -3,7 +3,7 @@
 import {sentence} from "../../page/event_words.js";
 import {inHand} from "./place.js";
 import {begin, change, enter, mayLeave} from "./shots.js";
-import {CAROM, startOf, tableOf} from "./tables.js";
+import {infoOf, startOf, tableOf} from "./tables.js";
 import {named} from "./words.js";
 
 const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
@@ -16,12 +16,12 @@ export function newGame(state, name, rules = {}, match = null, first = 0) {
 }
 
 function rackUp(state, name, rules, match, first) {
-  const {carom} = state, table = tableOf(name, state.scene.table.preset || "nine_foot");
-  const target = CAROM.includes(name) ? 15 : name === "straight_pool" ? 50 : 0;
+  const {carom} = state, info = infoOf(state, name);
+  const table = tableOf(info, state.scene.table.preset || "nine_foot"), {usual_target: target} = info;
   const game = name === "" ? null : {state: carom.games.start(name, {first, target, rules}), option: 0};
   Object.assign(state, {match, mode: match ? "play" : state.mode});
   state.tell("mode");
-  begin(state, startOf(carom, name, table, randomSeed()), {game});
+  begin(state, startOf(carom, info, table, randomSeed()), {game});
 }
 
 /** The player's rights: {callable, mayPushOut}, and all of them in words. */
@@ -89,7 +89,7 @@ export function nextShot(state, option = 0) {
   const {state: then, rerack, text} = verdict.options[option];
   if (then.over) return state.say(`${sentence(text)}.`);
   if (rerack)
-    return begin(state, startOf(carom, then.game, scene.table.preset, randomSeed()),
+    return begin(state, startOf(carom, infoOf(state, then.game), scene.table.preset, randomSeed()),
       {game: {state: then, option: 0}});
   const from = {toml: scene.toml, state: game.state, announced: {...announced}, option};
   try {

@@ -7,7 +7,7 @@ import {dialog} from "./extras.js";
 import {judge, legal, newGame, nextRack, nextShot} from "./game.js";
 import {LEVELS, PLAYED, take} from "./opponent.js";
 import {endWords, withNames} from "./players.js";
-import {GAMES} from "./tables.js";
+import {gamesOf, infoOf} from "./tables.js";
 import {named, verdictWords} from "./words.js";
 
 /** The calls before the shot. */
@@ -72,17 +72,17 @@ function verdictParts(state, opens) {
   const {verdict, clock, match, mode} = state;
   if (verdict === null || clock.now === 0) return [];
   const {chooser, options} = verdict, several = options.length > 1;
+  const info = infoOf(state, state.game.state.game);
   const who = chooser >= 0 ? withNames(state, `Player ${chooser + 1} chooses:`) : "";
   if (state.over) {
     const next = !match ? [] : [button(state.inMatch ? "Next rack" : "Rematch", () => nextRack(state),
       {class: "shoot"}),
       button("New game …", opens)];
-    return [make("p", {class: "over"}, endWords(state)), make("p", {}, verdictWords(verdict,
-      state.game.state.game)),
+    return [make("p", {class: "over"}, endWords(state)), make("p", {}, verdictWords(verdict, info)),
       make("div", {class: "bar"}, ...next)];
   }
   const mine = (mode === "practise" || several) && !match?.players[chooser];
-  return [make("p", {}, verdictWords(verdict, state.game.state.game), " ", who), ...options.map((option,
+  return [make("p", {}, verdictWords(verdict, info), " ", who), ...options.map((option,
     i) => {
     const then = withNames(state, sentence(option.text));
     const label = several ? `${sentence(option.decision)}: ${then}` : then;
@@ -132,7 +132,7 @@ export function gameDialog(state) {
     note.textContent = plays || name === "" ? ""
       : "carom judges this game but does not play it: two people play it on this page.";
   };
-  const game = select("Game", GAMES, "eight_ball", choose);
+  const game = select("Game", [["", "no rules"], ...gamesOf(state)], "eight_ball", choose);
   const start = () => {
     const name = game.value, levelsOf = players.map(({value}) => value);
     element.close();

@@ -13,6 +13,8 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/table.h"
+#include "carom/games/rules.h"
+#include "carom/interface/shape.h"
 #include "commands/play/play_files.h"
 #include "page/page.h"
 #include "report/table.h"
@@ -91,6 +93,8 @@ Json start_of(const PlayArgs& args) {
     page["lock"] = locked_keys(args.lock);
     page["scenes"] = shipped_scenes();
     page["tables"] = kTablePresets;
+    for (const games::Game game : games::all_of(games::Game{}))
+        page["games"].push_back(interface::value_of(games::info_of(game)));
     page["keys"] = keys_to_set();
     page["shaders"] = shaders();
     page["scene"] = "";

@@ -21,7 +21,7 @@ import {followSounds} from "./sound.js";
 import {State} from "./state.js";
 import {strokeCard} from "./stroke.js";
 import {tableCard} from "./table_card.js";
-import {startOf} from "./tables.js";
+import {infoOf, startOf} from "./tables.js";
 import {Thinker} from "./thinker.js";
 import {named, verdictWords} from "./words.js";
 
@@ -53,7 +53,7 @@ function conclude(state) {
   const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => named(b.id, state.scene.table.preset));
   const gone = ids.length > 0 ? ` In pockets: ${ids.join(", ")}.` : "";
   if (state.game && !verdict) return;
-  const judged = verdict ? ` ${verdictWords(verdict, state.game.state.game)}` : "";
+  const judged = verdict ? ` ${verdictWords(verdict, infoOf(state, state.game.state.game))}` : "";
   const warned = shot.warnings.map((text) => ` Warning: ${text}.`).join("");
   state.say(`At rest after ${shot.duration.toFixed(2)} s.${gone}${judged}${warned}`);
 }
@@ -133,7 +133,7 @@ async function open(state) {
   const said = await openAddress(state);
   if (state.shot) return said;
   const resumed = !said && state.page.scene === "" && resumeMatch(state);
-  if (!state.shot) openScene(state, state.page.scene || startOf(carom, "", "nine_foot"), {remember: false});
+  if (!state.shot) openScene(state, state.page.scene || startOf(carom, {}, "nine_foot"), {remember: false});
   state.tell("mode");
   return said ?? (resumed ? "The match continues." : null);
 }

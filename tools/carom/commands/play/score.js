@@ -3,7 +3,7 @@
 import {brightness, button, cssColour, make} from "../../page/dom.js";
 import {newGame} from "./game.js";
 import {nameOf} from "./players.js";
-import {POINTS} from "./words.js";
+import {infoOf} from "./tables.js";
 
 const LEAVES = ["ball_pocket", "ball_out"];
 
@@ -18,14 +18,15 @@ function chip({id, style: {color, pattern, number}}) {
 const groupOf = (id) => (Number(id) < 8 ? "solids" : Number(id) > 8 ? "stripes" : "");
 
 /** The text beside a player's name. */
-function standing({game: {state: now}, match}, player) {
+function standing(state, player) {
+  const {game: {state: now}, match} = state;
   const hand = match && !match.players[player] ? [`${match.errors || "exact"} hand`] : [];
   const racks = match?.race > 1 ? [`${match.racks[player]} of ${match.race}`] : [];
-  return [...racks, points(now, player), ...hand].filter((x) => x).join(" · ");
+  return [...racks, points(now, player, infoOf(state, now.game)), ...hand].filter((x) => x).join(" · ");
 }
-function points(now, player) {
+function points(now, player, {is_scored: scored}) {
   if (now.game === "eight_ball") return now.group[player] === "open" ? "" : now.group[player];
-  return POINTS.includes(now.game) ? `${now.points[player]}${now.target ? ` of ${now.target}` : ""}` : "";
+  return scored ? `${now.points[player]}${now.target ? ` of ${now.target}` : ""}` : "";
 }
 
 export function scoreBar(state) {

@@ -3,7 +3,7 @@
 import {make, select} from "../../page/dom.js";
 import {placeFields} from "./place.js";
 import {begin, change, setOrDrop} from "./shots.js";
-import {CLOTHS, GAMES, startOf, tableOf} from "./tables.js";
+import {CLOTHS, gamesOf, infoOf, startOf, tableOf} from "./tables.js";
 
 const MATERIAL = [["mu_s", "sliding friction", 0.01], ["mu_r", "rolling friction", 0.001],
   ["mu_b", "ball-ball friction", 0.01], ["e_b", "ball-ball restitution", 0.01],
@@ -28,11 +28,12 @@ function materialFields(state) {
 export function setupCard(state) {
   const {page, carom} = state;
   const tables = page.tables.map((name) => [name, name.replaceAll("_", " ")]);
-  const table = select("Table", tables, "nine_foot", (name) => begin(state, startOf(carom, "", name)));
+  const table = select("Table", tables, "nine_foot", (name) => begin(state, startOf(carom, {}, name)));
   const cloth = select("Cloth", CLOTHS, "", (name) => setOrDrop(state, "table.cloth", name));
-  const rack = select("Rack", [["", "choose …"], ...GAMES.slice(1)], "", (name) => {
+  const rack = select("Rack", [["", "choose …"], ...gamesOf(state)], "", (name) => {
     rack.value = "";
-    if (name) begin(state, startOf(carom, name, tableOf(name, state.scene.table.preset || "nine_foot")));
+    const info = infoOf(state, name);
+    if (name) begin(state, startOf(carom, info, tableOf(info, state.scene.table.preset || "nine_foot")));
   });
   const models = page.keys.physics.cushion.enum.map((name) => [name, name]);
   const cushions = select("Cushion model", [["", "as the balls"], ...models], "",

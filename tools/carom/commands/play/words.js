@@ -1,10 +1,5 @@
 // Numbers with units, and events in words.
 
-import {CAROM} from "./tables.js";
-
-/** The games whose score is points. */
-export const POINTS = [...CAROM, "snooker", "straight_pool", "free_pyramid"];
-
 export const UNITS = {
   metric: {speed: [1, "m/s", 2], length: [100, "cm", 1]},
   inch: {speed: [2.2369362921, "mph", 1], length: [39.37007874, "in", 1]},
@@ -57,10 +52,10 @@ export const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "bal
   "ball_pocket", "ball_out"].includes(e.type);
 
 const counted = (n) => `${n} point${n === 1 ? "" : "s"}`;
-/** The verdict on a shot in a sentence. `game`: its name. */
-export function verdictWords({fouls, points, penalty}, game) {
+/** The verdict on a shot in a sentence. `is_scored`: whether the game counts points. */
+export function verdictWords({fouls, points, penalty}, {is_scored: scored}) {
   const broken = fouls.map(({foul, rule}) => (rule ? `${foul} (${rule})` : foul)).join(", ");
   const other = penalty > 0 ? `; ${counted(penalty)} to the other player` : "";
   return broken ? `Foul: ${broken}${other}.`
-    : `Fair shot${POINTS.includes(game) && points > 0 ? `, ${counted(points)}` : ""}.`;
+    : `Fair shot${scored && points > 0 ? `, ${counted(points)}` : ""}.`;
 }

@@ -1,0 +1,145 @@
+// The types of the interface as a reference page and as Python classes.
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "carom/games/rules.h"
+#include "carom/interface/shape.h"
+
+namespace carom::interface {
+namespace {
+
+using Kind = Shape::Kind;
+
+std::string quoted_names(const Shape& choice) {
+    return fmt::format("\"{}\"", fmt::join(choice.names, "\", \""));
+}
+
+/// A type in words: "2: 0 to 9".
+std::string in_words(const Shape& shape, const Shape::Limits& limits) {
+    const Whole& range = limits.range;
+    switch (shape.kind) {
+        case Kind::kTruth:
+            return "truth";
+        case Kind::kWhole:
+            return range.least == range.most ? "whole number"
+                                             : fmt::format("{} to {}", range.least, range.most);
+        case Kind::kNumber:
+            return limits.may_be_nan ? "number or null" : "number";
+        case Kind::kText:
+            return "text";
+        case Kind::kChoice:
+            if (&shape == &shape_of<games::Game>()) return "game";
+            return quoted_names(shape);
+        case Kind::kList:
+            return "list: " + in_words(shape.item(), limits);
+        case Kind::kArray:
+            return fmt::format("{}: {}", shape.count, in_words(shape.item(), limits));
+        case Kind::kOptional:
+            return in_words(shape.item(), limits) + " or null";
+        case Kind::kType:
+            break;
+    }
+    return fmt::format("[{0}](#{1})", shape.name, [&] {
+        std::string anchor = shape.name;
+        for (char& c : anchor) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+        return anchor;
+    }());
+}
+
+/// A type in Python. @param fixed  lists are tuples
+std::string in_python(const Shape& shape, bool fixed) {
+    switch (shape.kind) {
+        case Kind::kTruth:
+            return "bool";
+        case Kind::kWhole:
+            return "int";
+        case Kind::kNumber:
+            return "float";
+        case Kind::kText:
+            return "str";
+        case Kind::kChoice:
+            return &shape == &shape_of<games::Game>() ? "GameName" : "Literal[" + quoted_names(shape) + "]";
+        case Kind::kList:
+            return fixed ? "tuple[" + in_python(shape.item(), fixed) + ", ...]"
+                         : "list[" + in_python(shape.item(), fixed) + "]";
+        case Kind::kOptional:
+            return in_python(shape.item(), fixed) + " | None";
+        case Kind::kType:
+            return shape.name;
+        case Kind::kArray:
+            break;
+    }
+    const std::vector<std::string> items(shape.count, in_python(shape.item(), fixed));
+    return fmt::format("tuple[{}]", fmt::join(items, ", "));
+}
+
+std::string python_default(const Value& value) {
+    if (value.is_null()) return "None";
+    if (value.is_boolean()) return value.get<bool>() ? "True" : "False";
+    if (!value.is_array()) return value.dump();
+    std::vector<std::string> items;
+    for (const Value& each : value) items.push_back(python_default(each));
+    return fmt::format("({}{})", fmt::join(items, ", "), items.size() == 1 ? "," : "");
+}
+
+/// Lines of at most 110 columns; later ones begin with `indent`. @param between  where a line may end
+std::string wrapped(std::string text, const std::string& between, const std::string& indent) {
+    constexpr std::size_t kWidth = 110;
+    std::string lines;
+    while (text.size() > kWidth) {
+        const std::size_t end = text.rfind(between, kWidth - between.size());
+        if (end == text.npos || end <= indent.size()) break;
+        const std::size_t past = end + between.size();
+        lines += text.substr(0, past);
+        while (lines.back() == ' ') lines.pop_back();
+        lines += "\n";
+        text = indent + text.substr(past);
+    }
+    return lines + text + "\n";
+}
+
+}  // namespace
+
+std::string types_page() {
+    std::string text =
+        "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), JavaScript, and Python's "
+        "`carom.games`. Missing keys have defaults.\n";
+    for (const Shape* type : types()) {
+        // For the interactive page; people read `carom describe games`.
+        if (type == &shape_of<games::GameInfo>() || type == &shape_of<games::RuleOption>()) continue;
+        text += fmt::format("\n## {}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", type->name,
+                            type->meaning);
+        for (const Shape::Member& row : type->rows)
+            text +=
+                fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.limits), row.meaning);
+    }
+    return text;
+}
+
+std::string types_for_python() {
+    std::string text = "# begin GameName\n" +
+                       wrapped("GameName: TypeAlias = Literal[" + quoted_names(shape_of<games::Game>()) + "]",
+                               ", ", std::string(30, ' ')) +
+                       "# end GameName\n";
+    for (const Shape* type : types()) {
+        text += fmt::format("\n\n# begin {0}\nclass {0}(NamedTuple):\n", type->name) +
+                wrapped(fmt::format("    \"\"\"{}\"\"\"", type->meaning), " ", "    ") + "\n";
+        for (const Shape::Member& row : type->rows) {
+            std::string member =
+                fmt::format("    {}: {}", row.key, in_python(row.shape(), type->is_made_by_callers));
+            if (type->is_made_by_callers && !row.is_needed)
+                member += " = " + python_default(type->default_value().at(row.key));
+            // A caller who makes such a value need not compute them.
+            if (row.computed != nullptr) member += row.shape().kind == Kind::kTruth ? " = False" : " = \"\"";
+            text += wrapped(fmt::format("    #: {}", row.meaning), " ", "    #: ") +
+                    wrapped(member, ", ", "        ");
+        }
+        text += fmt::format("# end {}\n", type->name);
+    }
+    return text;
+}
+
+}  // namespace carom::interface

@@ -1,0 +1,215 @@
+"""Types of the interface. tools/renew_formats.py writes the parts between the marks; methods follow them."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple, TypeAlias
+
+from carom import _carom
+
+# begin GameName
+GameName: TypeAlias = Literal["eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three",
+                              "ten_ball", "straight_pool", "free_pyramid", "straight_rail", "one_cushion",
+                              "four_ball"]
+# end GameName
+
+
+# begin State
+class State(NamedTuple):
+    """The memory of a game between two shots. Players are 0 and 1; a pair has a value for each."""
+
+    #: The game.
+    game: GameName
+    #: Whose shot it is.
+    turn: int = 0
+    #: The break, or the first shot of a carom game.
+    opening: bool = True
+    #: Of the cue ball: its area.
+    in_hand: Literal["no", "anywhere", "head string", "D"] = "no"
+    #: Below 0 in straight pool and four-ball.
+    points: tuple[int, int] = (0, 0)
+    #: Points that win; 0: no end.
+    target: int = 0
+    #: The game is over.
+    over: bool = False
+    #: -1: none, or not yet.
+    winner: int = -1
+    #: Eight-ball.
+    group: tuple[Literal["open", "solids", "stripes"], Literal["open", "solids", "stripes"]] = ("open",
+        "open")
+    #: Nine-ball, ten-ball: the shot after the break.
+    may_push_out: bool = False
+    #: In a row; snooker: misses with a clear path to a full ball.
+    fouls: tuple[int, int] = (0, 0)
+    #: Snooker: the ball on; colour: any, after a red.
+    on: Literal["colour", "red", "yellow", "green", "brown", "blue", "pink", "black"] = "red"
+    #: Snooker: any ball may be nominated.
+    free_ball: bool = False
+    #: Options that are not defaults, such as "call=eight".
+    rules: tuple[str, ...] = ()
+# end State
+
+    @property
+    def cue_ball(self) -> str:
+        """The ball that the player strikes: "cue", or in carom games "white" or "yellow". In free pyramid any
+        ball may be struck."""
+        return _carom.cue_ball(self)
+
+
+# begin Call
+class Call(NamedTuple):
+    """An announcement before a shot."""
+
+    #: Id of the called ball. Snooker: the nominated colour or free ball; if "", the ball that is hit first.
+    ball: str = ""
+    #: Id of the called pocket: "p1", ...
+    pocket: str = ""
+    #: Eight-ball, ten-ball, straight pool: the turn ends whatever falls.
+    safety: bool = False
+    #: Nine-ball, ten-ball: a push out.
+    push_out: bool = False
+# end Call
+
+
+# begin Legal
+class Legal(NamedTuple):
+    """The rules of the next shot."""
+
+    #: That may be struck: one, in free pyramid any.
+    cue_balls: list[str]
+    #: That may be hit first.
+    first: list[str]
+    #: That may be called.
+    callable: list[str]
+    #: As in the state.
+    in_hand: Literal["no", "anywhere", "head string", "D"]
+    #: A push out may be called.
+    may_push_out: bool
+# end Legal
+
+
+# begin Foul
+class Foul(NamedTuple):
+    """A foul, and the rule that it breaks."""
+
+    #: Its name.
+    foul: Literal["cue ball pocketed", "cue ball off the table", "no ball hit", "wrong ball first",
+        "no cushion after contact", "too few balls to a cushion on the break", "ball off the table",
+        "cue ball placed outside its area", "ball behind the head string first", "third foul in a row",
+        "wrong cue ball", "opening shot not at the red", "wrong ball pocketed", "two balls hit at once",
+        "jump shot", "snooker behind the free ball", "miss", "opponent's cue ball hit",
+        "touching ball played into"]
+    #: "WPA 6.1"; "" if the game has no such rule.
+    rule: str
+# end Foul
+
+    @property
+    def name(self) -> str:
+        """The same as `foul`."""
+        return self.foul
+
+
+# begin Respot
+class Respot(NamedTuple):
+    """A ball that is respotted."""
+
+    #: Its id.
+    ball: str
+    #: [m]
+    place: tuple[float, float]
+# end Respot
+
+
+# begin Option
+class Option(NamedTuple):
+    """A possible continuation of the game."""
+
+    #: The next step.
+    decision: Literal["play on", "take in hand", "pass back", "rerack", "rerack for other", "spot the eight",
+        "spot touching balls", "replace the balls", "rack fourteen"]
+    #: Of the next shot.
+    state: State
+    #: Before it.
+    respots: list[Respot]
+    #: The balls are racked again.
+    rerack: bool = False
+    #: The next shot in words.
+    text: str = ""
+# end Option
+
+
+# begin Verdict
+class Verdict(NamedTuple):
+    """The outcome of a shot."""
+
+    #: Empty for a fair shot.
+    fouls: list[Foul]
+    #: Scored by the shot.
+    points: int
+    #: Snooker: points for the other player.
+    penalty: int
+    #: At least one; the first applies unless the chooser picks another.
+    options: list[Option]
+    #: A player; -1 with one option, or if lots decide.
+    chooser: int
+# end Verdict
+
+    @property
+    def next(self) -> State:
+        """The state of the first option."""
+        return self.options[0].state
+
+    @property
+    def respots(self) -> list[Respot]:
+        """The balls that return under the first option."""
+        return self.options[0].respots
+
+
+# begin RuleOption
+class RuleOption(NamedTuple):
+    """An option of a game's rules."""
+
+    #: The game.
+    game: GameName
+    #: Its name.
+    key: str
+    #: The first one is the default.
+    values: list[str]
+    #: Its meaning.
+    what: str
+# end RuleOption
+
+
+# begin GameInfo
+class GameInfo(NamedTuple):
+    """A game."""
+
+    #: In files.
+    name: str
+    #: For people.
+    title: str
+    #: Its published rules, with their edition.
+    book: str
+    #: Announcements before a shot.
+    calls: str
+    #: Players collect points.
+    is_scored: bool
+    #: Each player has a group of balls.
+    has_groups: bool
+    #: A safety may be called.
+    has_safety: bool
+    #: A push out may be called.
+    has_push_out: bool
+    #: Points that win, if none are given; 0: no end.
+    target: int
+    #: A target to offer; 0: none.
+    usual_target: int
+    #: Object balls of a full rack.
+    balls: int
+    #: A table for it: a preset.
+    table: str
+    #: Its first scene, without table and balls. Places are fractions of the width (w) and the length (l) of
+    #: the table; SEED is of the rack.
+    start: str
+    #: Of its rules.
+    options: list[RuleOption]
+# end GameInfo
