@@ -45,7 +45,7 @@ Option rack_again(const Facts& facts, State next) {
     std::string last;
     for (const std::string& ball : facts.ids())
         if (number_of(ball) > 0 && !facts.gone(ball)) last = ball;
-    Option option{Decision::kRackFourteen, next, {}};
+    Option option{Decision::kRackFourteen, std::move(next), {}};
     const Vec2 other = last.empty() ? Vec2::Zero() : facts.rest(last);
     bool fifteen = last.empty();
     if (!last.empty() && in_rack(slots, R, other, R)) {
