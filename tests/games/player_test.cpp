@@ -270,7 +270,7 @@ TEST(Player, FreshShotsDecideTheOrder) {
 
 // The last option of a push out is to pass the shot back, and nobody passes an easy pot back.
 TEST(Player, APushOutLeavesTheOpponentsChoice) {
-    State state = turn(&kNineBall);
+    State state = turn(&games::kNineBall);
     state.may_push_out = true;
     AdviceOptions options;
     options.best = 20;
@@ -296,7 +296,7 @@ TEST(Player, AdvisesNoFlukes) {
     AdviceOptions options;
     options.best = 20;
     for (const Advice& a :
-         games::advise(turn(&kEightBall), scene, games::skill_by_name("machine", kPoolRadius),
+         games::advise(turn(&games::kEightBall), scene, games::skill_by_name("machine", kPoolRadius),
                        kernel::best_isa(), options)) {
         if (a.ball.empty()) continue;
         const Record record = simulate(make_plan(games::scene_with(scene, a), kernel::best_isa()));
