@@ -154,8 +154,8 @@ TEST(Pages, TheIndexNamesEveryPage) {
 // A file or folder is named by the end of its path.
 TEST(Pages, ArchitectureNamesWhatExists) {
     std::set<std::string> ends;
-    for (const char* top : {"kernel", "engine", "games", "render", "capi", "python", "tools", "web", "tests",
-                            "lab", "examples"})
+    for (const char* top : {"kernel", "engine", "games", "interface", "render", "capi", "python", "tools",
+                            "web", "tests", "lab", "examples"})
         for (const auto& entry : fs::recursive_directory_iterator(CAROM_SOURCE_DIR "/" + std::string(top))) {
             std::string path = "/" + fs::relative(entry.path(), CAROM_SOURCE_DIR).generic_string();
             for (std::size_t at = 0; at != path.npos; at = path.find('/', at + 1))
