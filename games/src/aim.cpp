@@ -26,19 +26,12 @@ constexpr int kHalvings = 36;
 /// [ball radii] Rounding of positions: a ball against a cushion may run along it.
 constexpr double kAlongCushion = 1e-9;
 
-/// Distance of a point from a segment.
-double to_segment(const Vec2& p, const Vec2& from, const Vec2& to) {
-    const Vec2 way = to - from;
-    const double way2 = way.squaredNorm();
-    const double share = way2 > 0.0 ? std::clamp(dot(p - from, way) / way2, 0.0, 1.0) : 0.0;
-    return length(from + share * way - p);
-}
-
 double between_segments(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
     const bool parted_by_ab = cross(b - a, c - a) * cross(b - a, d - a) > 0.0;
     const bool parted_by_cd = cross(d - c, a - c) * cross(d - c, b - c) > 0.0;
     if (!parted_by_ab && !parted_by_cd && cross(b - a, d - c) != 0.0) return 0.0;
-    return std::min({to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)});
+    return std::min({distance_to_segment(a, c, d), distance_to_segment(b, c, d), distance_to_segment(c, a, b),
+                     distance_to_segment(d, a, b)});
 }
 
 /// Distance to the edge of a pocket's circle; infinite if the line misses it.
@@ -95,7 +88,7 @@ bool enters(const Table& table, const Pocket& pocket, Goal goal, const Vec2& fro
                        [&](const Jaw& j) {
                            // A straight path ends farthest from the centre of a wall around it.
                            if (j.around()) return length(end - j.center) <= j.radius - least;
-                           return to_segment(j.center, from, end) >= j.radius + least;
+                           return distance_to_segment(j.center, from, end) >= j.radius + least;
                        }) &&
            std::none_of(table.pockets.begin(), table.pockets.end(), [&](const Pocket& other) {
                return &other != &pocket && way_to_circle(other, from, towards) < way;

@@ -43,8 +43,8 @@ struct Played {
 };
 
 /// A strike at one ball for one pocket, with any aim.
-struct Player {
-    Player(const Scene& played, const Cue& how, std::string_view object, std::string_view into)
+struct AimTrial {
+    AimTrial(const Scene& played, const Cue& how, std::string_view object, std::string_view into)
         : scene(played),
           ball_id(object),
           pocket(static_cast<int>(&detail::pocket_of(played, into) - played.table.pockets.data())),
@@ -82,10 +82,10 @@ bool fell_into(const Shot& shot, int ball, int pocket) {
 }
 
 /// One strike. @param towards  the ball should run along it; null: into the pocket after its first cushion
-Played played_at(Player& player, double aim_deg, const Vec2* towards) {
-    const Record record = player.play(aim_deg);
+Played played_at(AimTrial& trial, double aim_deg, const Vec2* towards) {
+    const Record record = trial.play(aim_deg);
     const Shot shot = shot_of(record);
-    const int ball = index_of(record, player.ball_id);
+    const int ball = index_of(record, trial.ball_id);
     Played played;
     played.why = missed(record, shot, ball);
     if (!played.why.empty()) return played;
@@ -96,15 +96,15 @@ Played played_at(Player& player, double aim_deg, const Vec2* towards) {
         if (stop == nullptr || stop->type != EventType::kBallCushion) return played;
         played.cushion = stop->b;
         from = stop->time;
-        const Pocket& pocket = record.table.pockets[static_cast<std::size_t>(player.pocket)];
-        line = detail::line_from(record.table, pocket, place_at(record, ball, from), player.R);
+        const Pocket& pocket = record.table.pockets[static_cast<std::size_t>(trial.pocket)];
+        line = detail::line_from(record.table, pocket, place_at(record, ball, from), trial.R);
         if (line.width_deg == 0.0) return played;
         stop = next_stop(record, ball, from);
         towards = &line.towards;
     }
     played.off = off_line(record, ball, from, stop, *towards);
     if (!played.off) played.why = "the ball does not move";
-    played.potted = fell_into(shot, ball, player.pocket);
+    played.potted = fell_into(shot, ball, trial.pocket);
     return played;
 }
 
@@ -139,30 +139,30 @@ Tried narrowed(Tried a, Tried b, double near, const Play& play) {
 }
 
 /// Half of the angle under which the cue ball sees the ball that it should hit [degrees].
-double half_view_deg(const Player& player) {
-    const double distance = length(player.place - player.cue_place);
-    return 90.0 - arc_cos(std::min(1.0, player.both / distance)) * kDegrees;
+double half_view_deg(const AimTrial& trial) {
+    const double distance = length(trial.place - trial.cue_place);
+    return 90.0 - arc_cos(std::min(1.0, trial.both / distance)) * kDegrees;
 }
 
 /// Deviation of a cue ball that misses from its path to the ghost ball, by squirt and swerve [degrees];
 /// positive to the left.
-double strays_deg(const Player& player, const Record& record, const Vec2& ghost) {
-    const Vec2 way = ghost - player.cue_place;
+double strays_deg(const AimTrial& trial, const Record& record, const Vec2& ghost) {
+    const Vec2 way = ghost - trial.cue_place;
     const int cue_ball = shot_of(record).struck;
     const Event* stop = next_stop(record, cue_ball, 0.0);
     double late = stop != nullptr ? stop->time : record.duration, early = 0.0;
     // At the distance of the ghost ball, or as far as it gets.
     for (int k = 0; k < kNarrow; ++k) {
         const double middle = 0.5 * (early + late);
-        (length(place_at(record, cue_ball, middle) - player.cue_place) < length(way) ? early : late) = middle;
+        (length(place_at(record, cue_ball, middle) - trial.cue_place) < length(way) ? early : late) = middle;
     }
-    const Vec2 went = place_at(record, cue_ball, late) - player.cue_place;
+    const Vec2 went = place_at(record, cue_ball, late) - trial.cue_place;
     return direction_deg({dot(way, went), cross(way, went)});
 }
 
 /// Why geometry rules out the aim, or "".
-std::string refused(const Player& player, const PocketLine& line, double cut_deg) {
-    const std::string& id = player.ball_id;
+std::string refused(const AimTrial& trial, const PocketLine& line, double cut_deg) {
+    const std::string& id = trial.ball_id;
     if (line.width_deg == 0.0) return "no straight path of ball " + id + " into the pocket clears the jaws";
     if (!line.in_the_way.empty()) return "ball " + line.in_the_way + " is in the way of ball " + id;
     if (!(cut_deg < 90.0)) return "the cut would be 90 degrees or more";
@@ -207,17 +207,17 @@ std::optional<double> off_line(const Record& record, int ball, double from, cons
 }  // namespace detail
 
 Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::string_view pocket) {
-    Player player(scene, how, ball, pocket);
-    const PocketLine line = pocket_lines(scene, ball, how.ball)[static_cast<std::size_t>(player.pocket)];
-    const Vec2 ghost = ghost_ball(player.place, line.towards, player.both);
+    AimTrial trial(scene, how, ball, pocket);
+    const PocketLine line = pocket_lines(scene, ball, how.ball)[static_cast<std::size_t>(trial.pocket)];
+    const Vec2 ghost = ghost_ball(trial.place, line.towards, trial.both);
     Aim aim;
-    aim.geometric_deg = direction_deg(ghost - player.cue_place);
-    aim.cut_deg = cut_angle_deg(player.cue_place, ghost, line.towards);
-    aim.why = refused(player, line, aim.cut_deg);
+    aim.geometric_deg = direction_deg(ghost - trial.cue_place);
+    aim.cut_deg = cut_angle_deg(trial.cue_place, ghost, line.towards);
+    aim.why = refused(trial, line, aim.cut_deg);
     if (!aim.why.empty()) return aim;
     const double near = kNearMiddle * line.width_deg / kDegrees;
     const auto off_at = [&](double aim_deg) {
-        const Played played = played_at(player, aim_deg, &line.towards);
+        const Played played = played_at(trial, aim_deg, &line.towards);
         aim.why = played.why;
         return played.off;
     };
@@ -225,7 +225,7 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
     Tried start = {aim.geometric_deg, 0.0};
     std::optional<double> first = off_at(start.aim_deg);
     for (int k = 0; k < kCorrections && !first; ++k) {
-        start.aim_deg -= strays_deg(player, player.play(start.aim_deg), ghost);
+        start.aim_deg -= strays_deg(trial, trial.play(start.aim_deg), ghost);
         first = off_at(start.aim_deg);
     }
     // A ball that runs too far to the left was hit too far on its right: the aim moves left, in doubling
@@ -233,7 +233,7 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
     if (first) {
         start.off = *first;
         Tried a = start, b = a;
-        double step = 0.02 * half_view_deg(player) * (a.off > 0.0 ? 1.0 : -1.0);
+        double step = 0.02 * half_view_deg(trial) * (a.off > 0.0 ? 1.0 : -1.0);
         std::optional<double> miss;  // an aim that misses the ball: the wanted one is before it
         for (int k = 0; k < kBrackets && (a.off > 0.0) == (b.off > 0.0) && std::abs(b.off) > near; ++k) {
             const double next = miss ? 0.5 * (b.aim_deg + *miss) : b.aim_deg + step;
@@ -248,29 +248,29 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
         }
         const bool between = (a.off > 0.0) != (b.off > 0.0);
         const Tried best = between ? narrowed(a, b, near, off_at) : b;
-        const Played played = played_at(player, best.aim_deg, &line.towards);
+        const Played played = played_at(trial, best.aim_deg, &line.towards);
         aim.why = played.why;
         if (played.potted)
-            aim.cue = *player.scene.cue;
+            aim.cue = *trial.scene.cue;
         else if (aim.why.empty())
             aim.why = std::abs(best.off) > near ? "no aim sends the ball there"
                                                 : "the ball runs towards the pocket but does not fall";
     }
     if (aim.cue) aim.why.clear();
-    aim.shots = player.shots;
+    aim.shots = trial.shots;
     return aim;
 }
 
 std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_view ball,
                              std::string_view pocket) {
-    Player player(scene, how, ball, pocket);
-    const double middle = direction_deg(player.place - player.cue_place), half = half_view_deg(player);
+    AimTrial trial(scene, how, ball, pocket);
+    const double middle = direction_deg(trial.place - trial.cue_place), half = half_view_deg(trial);
     std::vector<Aim> routes;
     std::optional<Tried> last;
     int last_cushion = -1;
     for (int k = 0; k <= kBankAims; ++k) {
         const double aim_deg = middle + half * (2.0 * k / kBankAims - 1.0);
-        const Played played = played_at(player, aim_deg, nullptr);
+        const Played played = played_at(trial, aim_deg, nullptr);
         const std::optional<Tried> here =
             played.off ? std::optional(Tried{aim_deg, *played.off}) : std::nullopt;
         const bool crossed =
@@ -281,12 +281,12 @@ std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_vie
             std::any_of(routes.begin(), routes.end(), [&](const Aim& r) { return r.cushion == cushion; });
         if (crossed && !known) {
             const Tried best = narrowed(*last, *here, 1e-6, [&](double aim) {
-                const Played next = played_at(player, aim, nullptr);
+                const Played next = played_at(trial, aim, nullptr);
                 return next.cushion == played.cushion ? next.off : std::nullopt;
             });
-            if (played_at(player, best.aim_deg, nullptr).potted) {
+            if (played_at(trial, best.aim_deg, nullptr).potted) {
                 Aim route;
-                route.cue = *player.scene.cue;
+                route.cue = *trial.scene.cue;
                 route.cushion = cushion;
                 routes.push_back(route);
             }
@@ -294,7 +294,7 @@ std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_vie
         last = here;
         last_cushion = played.cushion;
     }
-    for (Aim& route : routes) route.shots = player.shots;
+    for (Aim& route : routes) route.shots = trial.shots;
     return routes;
 }
 

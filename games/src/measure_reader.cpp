@@ -49,9 +49,9 @@ void as_list(Node& text, const Node& measure) {
 }
 
 /// Reads an expression by recursive descent, one function per level of precedence.
-class Reader {
+class MeasureReader {
   public:
-    Reader(const std::string& text, const Scene& scene, std::optional<Game> game)
+    MeasureReader(const std::string& text, const Scene& scene, std::optional<Game> game)
         : text_(text), scene_(scene), game_(game) {
         next();
     }
@@ -347,7 +347,7 @@ bool is_number(const Node& node) {
 }
 
 Measure::Node read_tree(const std::string& text, const Scene& scene, std::optional<Game> game) {
-    return Reader(text, scene, game).whole();
+    return MeasureReader(text, scene, game).whole();
 }
 
 }  // namespace carom::games::detail

@@ -90,7 +90,8 @@ bool may_place(const Record& record, const Option& option, const Vec2& place) {
     return is_free(place, R, others);
 }
 
-Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted) {
+Vec2 free_place(const Record& record, const Option& option, const std::optional<Vec2>& wanted) {
+    const Vec2 from = wanted.value_or(head_spot(record.table));
     const double step = radius_of(record, option, cue_ball(option.state)) / 4.0;
     // Rings of a lattice: whole numbers, whose distances have the same order on every processor.
     for (int ring = 0; ring * step <= record.table.width + record.table.length; ++ring) {
@@ -102,7 +103,7 @@ Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted) 
                     places.push_back({far, x, y});
         std::sort(places.begin(), places.end());
         for (const auto& [far, x, y] : places)
-            if (Vec2 place = wanted + step * Vec2(x, y); may_place(record, option, place)) return place;
+            if (Vec2 place = from + step * Vec2(x, y); may_place(record, option, place)) return place;
     }
     throw std::invalid_argument("there is no free place for the cue ball");
 }

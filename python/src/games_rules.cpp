@@ -48,7 +48,7 @@ NativeScene next_table(const NativeRecord& record, const NativeScene* other, nb:
     if (place)
         at = vec2(*place);
     else if (cue.empty() && chosen.state.in_hand != games::InHand::kNo)
-        at = games::free_place(*record.record, chosen, head_spot(record.record->table));
+        at = games::free_place(*record.record, chosen);
     return with_cue(cue, games::table_after(scene, *record.record, chosen, at));
 }
 

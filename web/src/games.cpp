@@ -154,7 +154,7 @@ CAROM_WEB int carom_game_next(const WebShot* shot, const WebVerdict* verdict, st
         if (x == x && y == y)
             place = Vec2(x, y);
         else if (option.state.in_hand != games::InHand::kNo)
-            place = games::free_place(shot->record, option, head_spot(shot->record.table));
+            place = games::free_place(shot->record, option);
         Scene next = games::table_after(shot->scene, shot->record, option, place);
         const std::vector<std::string> balls = ids_of(next.ball);
         next.cue =

@@ -89,8 +89,8 @@ void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std:
 }
 
 /// A thread of a batch: its simulators, and the balls of its last shot if some were removed.
-struct Player {
-    Player(const Scene& scene, kernel::Isa isa, bool keeps_records)
+struct Worker {
+    Worker(const Scene& scene, kernel::Isa isa, bool keeps_records)
         : whole(scene, isa), records(keeps_records) {
         if (records) whole.keep_records();
     }
@@ -109,7 +109,7 @@ struct Player {
     Simulator* last = &whole;
     std::vector<int> present;
 };
-using PlayShot = std::function<ShotStatus(Player&, std::size_t shot, const SimulateOptions&)>;
+using PlayShot = std::function<ShotStatus(Worker&, std::size_t shot, const SimulateOptions&)>;
 
 struct ColumnShots {
     const Scene& scene;
@@ -125,27 +125,27 @@ struct ColumnShots {
         return change;
     }
 
-    ShotStatus operator()(Player& player, std::size_t shot, const SimulateOptions& options) const {
+    ShotStatus operator()(Worker& worker, std::size_t shot, const SimulateOptions& options) const {
         const std::size_t balls = scene.ball.size();
         const auto gone = absent.subspan(absent.empty() ? 0 : shot * balls, absent.empty() ? 0 : balls);
         const bool some = std::any_of(gone.begin(), gone.end(), [](std::uint8_t ball) { return ball != 0; });
-        player.last = some ? &player.partial(scene, isa) : &player.whole;
+        worker.last = some ? &worker.partial(scene, isa) : &worker.whole;
         try {
-            if (!some) return player.whole.play(put(player.whole.scene(), shot), options);
+            if (!some) return worker.whole.play(put(worker.whole.scene(), shot), options);
             Scene without = scene;
             put(without, shot);
-            player.present.clear();
+            worker.present.clear();
             std::vector<BallStart> left;
             for (std::size_t i = 0; i < balls; ++i) {
                 if (gone[i] != 0) continue;
-                player.present.push_back(static_cast<int>(i));
+                worker.present.push_back(static_cast<int>(i));
                 left.push_back(std::move(without.ball[i]));
             }
             without.ball = std::move(left);
             validate(without);
-            return player.last->play(without, options);
+            return worker.last->play(without, options);
         } catch (const SceneError& refused) {
-            return player.last->refuse(refused.message());
+            return worker.last->refuse(refused.message());
         }
     }
 };
@@ -194,25 +194,25 @@ struct Work {
         messages.push_back({shot, text});
     }
 
-    void play_one(Player& player, std::size_t shot) {
+    void play_one(Worker& worker, std::size_t shot) {
         const std::size_t balls = scene.ball.size();
-        const ShotStatus status = play(player, shot, simulate);
+        const ShotStatus status = play(worker, shot, simulate);
         if (out.status != nullptr) out.status[shot] = status;
-        const bool some = player.last != &player.whole;
+        const bool some = worker.last != &worker.whole;
         if (!has_result(status) || some)
             clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
         if (has_result(status)) {
-            keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
-            if (options.judge) options.judge(shot, player.last->outcome(), player.last->record());
+            keep(out, shot, worker.last->outcome(), balls, some ? &worker.present : nullptr);
+            if (options.judge) options.judge(shot, worker.last->outcome(), worker.last->record());
         } else {
-            add_message(shot, player.last->message());
+            add_message(shot, worker.last->message());
         }
-        if (options.done) options.done(shot, has_result(status) ? std::string() : player.last->message());
+        if (options.done) options.done(shot, has_result(status) ? std::string() : worker.last->message());
     }
 
     void play_all() noexcept {
         try {
-            Player player(scene, isa, options.judge != nullptr);
+            Worker worker(scene, isa, options.judge != nullptr);
             while (!stopped) {
                 std::size_t first = next, last = 0;
                 do {
@@ -222,7 +222,7 @@ struct Work {
                 } while (!next.compare_exchange_weak(first, last));
                 for (std::size_t shot = first; shot < last; ++shot) {
                     check_stop();
-                    play_one(player, shot);
+                    play_one(worker, shot);
                 }
             }
         } catch (...) {
@@ -307,9 +307,9 @@ std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint6
     check_shots(shots);
     const std::size_t keys = variation.keys().size();
     values.assign(shots * keys, {});
-    const auto play = [&](Player& player, std::size_t shot, const SimulateOptions& how) {
+    const auto play = [&](Worker& worker, std::size_t shot, const SimulateOptions& how) {
         const std::span drawn = std::span(values).subspan(shot * keys, keys);
-        return player.whole.play(variation, first + shot, drawn, how);
+        return worker.whole.play(variation, first + shot, drawn, how);
     };
     return Work(variation.base(), shots, play, isa, options, out).run();
 }

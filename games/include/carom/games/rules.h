@@ -325,9 +325,10 @@ std::string struck_next(const State& state, std::span<const std::string> balls);
 /// @throws std::invalid_argument for an option with balls that are not in the record
 bool may_place(const Record& record, const Option& option, const Vec2& place);
 
-/// The place nearest to `wanted` that may_place() allows, in steps of a quarter of the ball's radius.
+/// The place nearest to `wanted`, by default the head spot, that may_place() allows, in steps of a quarter of
+/// the ball's radius.
 /// @throws std::invalid_argument as may_place(), and if there is none
-Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted);
+Vec2 free_place(const Record& record, const Option& option, const std::optional<Vec2>& wanted = {});
 
 /// The table before the next shot, without a cue: pocketed balls are gone, respotted balls are back, and the
 /// cue ball is placed.

@@ -150,7 +150,7 @@ std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const g
         return place;
     }
     if (option.state.in_hand == InHand::kNo) return std::nullopt;
-    return asked(args.scene, [&] { return games::free_place(record, option, head_spot(record.table)); });
+    return asked(args.scene, [&] { return games::free_place(record, option); });
 }
 
 int run_next(const NextArgs& args) {
