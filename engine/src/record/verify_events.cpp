@@ -90,7 +90,9 @@ class Events {
             calm_ = std::all_of(record_.events.begin() + static_cast<std::ptrdiff_t>(first_),
                                 record_.events.begin() + static_cast<std::ptrdiff_t>(last_),
                                 [](const Event& e) { return kind(e.type).phase == EventPhase::kTransition; });
-            instant(std::span(begin, next));
+            // The constructor from iterators is missing in emscripten's library.
+            instant(std::span(begun_).subspan(static_cast<std::size_t>(begin - begun_.begin()),
+                                              static_cast<std::size_t>(next - begin)));
         }
         return found_;
     }
