@@ -37,10 +37,10 @@ async function takeHint(player, by) {
 }
 
 /** Plays a frame of nine-ball to its end. @returns the numbers of shots by the person and by carom */
-async function playOut(player, by) {
+async function playOut(player, by, level = "beginner") {
   await player.open();
   await player.value("void (Object.assign(caromPlay.state, {quick: true}).clock.speed = 8)");
-  await player.frame("nine_ball", BALLS, {players: ["", "beginner"]});
+  await player.frame("nine_ball", BALLS, {players: ["", level]});
   // A shot at nothing: carom then plays with ball in hand.
   const aim = await player.value("caromPlay.scene().cue.aim_deg");
   if (by === "keys") for (let i = 0; i < 5; ++i) await player.browser.key("ArrowLeft");
@@ -71,6 +71,15 @@ function matches(player, name) {
       t.diagnostic(`${turns.person} shots of the person, ${turns.carom} of carom`);
       assert.ok(turns.person >= 1 && turns.carom >= 1);
       assert.match(await player.value("document.querySelector('.over').textContent"), /win/);
+    });
+
+  for (const level of ["beginner", "club", "league", "professional", "machine"])
+    test(`a match against ${level} to its end, by touch on a phone`, async () => {
+      await player.browser.size(390, 844, true);
+      await playOut(player, "touch", level);
+      assert.match(await player.value("document.querySelector('.over').textContent"), /win/);
+      await player.browser.picture(`${name}_phone_${level}`);
+      await player.browser.size(1400, 900);
     });
 
   test("carom thinks visibly, can be stopped, and continues", async () => {
