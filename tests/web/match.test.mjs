@@ -6,6 +6,8 @@ import {Player, missing} from "./play_page.mjs";
 
 const OVER = "caromPlay.state.verdict?.options[0].state.over === true && !caromPlay.state.clock.playing";
 const YOURS = "caromPlay.state.free && caromPlay.state.level === ''";
+// A whole shot of a quick match may pass between two looks, so shots are counted.
+const STARTED = "caromPlay.state.turns.person + caromPlay.state.turns.carom";
 const BALLS = {cue: [0.6, 0.7], 8: [0.9, 1.7], 9: [0.3, 2.0]};
 
 async function pressByKeys(player, text) {
@@ -53,12 +55,13 @@ async function playOut(player, by, level = "beginner") {
     }); })()`);
   if (by === "keys") await player.browser.key(" ", "Space");
   else await player.press("Shoot", by);
-  await player.browser.until(`!(${YOURS})`);
+  await player.browser.until(`${STARTED} > 0`);
   for (let shots = 0; shots < 40; ++shots) {
     await player.browser.until(`(${OVER}) || (${YOURS})`, 2400);
     if (await player.value(OVER)) break;
+    const before = await player.value(STARTED);
     await takeHint(player, by);
-    await player.browser.until(`!(${YOURS})`);
+    await player.browser.until(`${STARTED} > ${before}`);
   }
   assert.ok(await player.value(OVER), "the match has no end");
   return player.value("caromPlay.state.turns");
