@@ -1,5 +1,6 @@
 // Rows: the members of a type of the interface, each with its key and meaning. JSON, Python and the reference
-// page are made from them (interface/shape.h). The rows of a type follow its struct.
+// page are made from them (interface/shape.h). The rows of a type follow its struct. Scene files have the
+// fields of field.h instead: numbers and texts with units and defaults, which do not nest.
 #pragma once
 
 #include <cstddef>
