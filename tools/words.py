@@ -42,7 +42,7 @@ WEAK = {
     r"\banswers?\b": (19, "return, print, respond"),
     r"\bstands?\b": (8, "be, be listed, be stated"),
     r"\b(those|that) of\b": (108, "the noun again"),
-    r"\b(what|whatever|whoever)\b": (130, "a noun"),
+    r"\b(what|whatever|whoever)\b": (129, "a noun"),
 }
 
 
