@@ -194,6 +194,26 @@ TEST(Pages, LabNotesStateDateMachineAndCommit) {
     }
 }
 
+// An option that no page, example or script names has no user.
+TEST(Pages, EveryOptionStandsInAPageOrAScript) {
+    std::string text;
+    Pages pages = pages_of("docs/guide");
+    pages.merge(pages_of("docs/design"));
+    pages["README.md"] = read_source("README.md");
+    for (const auto& [name, page] : pages) text += page;
+    for (const char* folder : {"examples", "scenes", "tools", "lab", "packaging"})
+        for (const auto& entry : fs::recursive_directory_iterator(CAROM_SOURCE_DIR "/" + std::string(folder)))
+            if (entry.is_regular_file() && entry.path().extension() != ".cpp")
+                text += read_source(fs::relative(entry.path(), CAROM_SOURCE_DIR).string());
+    const std::string list = read_source("docs/reference/command_line.md");
+    const std::regex option(R"(--[a-z][a-z0-9-]*)");
+    std::size_t options = 0;
+    for (std::sregex_iterator it(list.begin(), list.end(), option), end; it != end; ++it, ++options)
+        EXPECT_TRUE(std::regex_search(text, std::regex(it->str() + "(?![a-z0-9-])")))
+            << it->str() << ": show it in docs/guide, or remove it";
+    EXPECT_GT(options, 80u);
+}
+
 // A word contains a letter or a digit; table rules and comments do not count. The generated command line page
 // does.
 TEST(Pages, GuideReferenceAndDesignCanBeReadInAnAfternoon) {

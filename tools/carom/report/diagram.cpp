@@ -78,7 +78,7 @@ class Drawing {
         draw_ghost();
         draw_spreads();
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_ball(static_cast<int>(i));
-        if (style_.speeds) draw_speeds();
+        draw_speeds();
         cairo_translate(cr_, 0.0, scale_ * (high_.x() - low_.x()));
         draw_inset();
         cairo_restore(cr_);
@@ -149,7 +149,6 @@ class Drawing {
         outlines(shape.at("cloth"), colored ? mixed(mesh_.cloth, kWhite, 0.62) : kWhite, !colored);
         outlines(shape.at("cushion"), colored ? mixed(mesh_.cloth, kWhite, 0.3) : mixed(kWhite, kGray, 0.25),
                  true);
-        if (style_.grid) draw_grid();
         outlines(shape.at("chalk"), colored ? kWhite : kGray, false);
         for (const Json& hole : shape.at("holes")) {
             const Json& center = hole.at("center");
@@ -161,26 +160,6 @@ class Drawing {
         }
         outlines(shape.at("inlay"), colored ? look::kInlay : kBlack, false);
         if (style_.diamond_numbers) draw_diamond_numbers();
-    }
-    /// A line for each quarter of a diamond, from rail to rail.
-    void draw_grid() {
-        constexpr int kQuarters = 32, kAcross = kQuarters / 2;
-        const carom::Table& t = record_.table;
-        if (!(t.width > 0.0 && t.length > 0.0)) return;
-        const auto line = [&](const Vec2& from, const Vec2& to, bool diamond) {
-            cairo_move_to(cr_, px(from), py(from));
-            cairo_line_to(cr_, px(to), py(to));
-            stroke(style_.color ? mixed(mesh_.cloth, kWhite, 0.3) : mixed(kWhite, kGray, 0.6),
-                   diamond ? 0.5 : 0.2);
-        };
-        for (int k = 1; k < kQuarters; ++k) {
-            const double y = t.corner.y() + t.length * k / kQuarters;
-            line({t.corner.x(), y}, {t.corner.x() + t.width, y}, k % 4 == 0);
-        }
-        for (int k = 1; k < kAcross; ++k) {
-            const double x = t.corner.x() + t.width * k / kAcross;
-            line({x, t.corner.y()}, {x, t.corner.y() + t.length}, k % 4 == 0);
-        }
     }
     /// On the cushions, beside the diamonds of the rail.
     void draw_diamond_numbers() {

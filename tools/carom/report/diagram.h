@@ -30,8 +30,6 @@ struct DiagramShot {
 struct DiagramStyle {
     bool color = true;
     bool diamond_numbers = false;
-    bool grid = false;   ///< lines at quarters of a diamond
-    bool speeds = true;  ///< beside the contacts of the struck ball
     Units units = Units::kMetric;
 };
 

@@ -23,8 +23,6 @@ struct DiagramArgs {
     std::string units = kUnits[0];
     bool black_and_white = false;
     bool diamonds = false;
-    bool grid = false;
-    bool speeds = true;
 };
 
 /// The first comment of a scene, else the name of the file.
@@ -58,8 +56,6 @@ int run(const DiagramArgs& args) {
     DiagramStyle style;
     style.color = !args.black_and_white;
     style.diamond_numbers = args.diamonds;
-    style.grid = args.grid;
-    style.speeds = args.speeds;
     style.units = units_of(args.units);
     write_report(args.output, draw_diagram(shots, style, format));
     print(fmt::format("{}: {}\n", harmless(args.output), counted(shots.size(), "shot")));
@@ -76,11 +72,9 @@ void add_diagram(Options& program) {
     command.option("-o,--output", &args.output, "FILE", "Drawing to write: .svg, .pdf or .png");
     command.option("--title", &args.titles, "TEXT",
                    "Title of a shot; repeat it for each shot (default: from the scene's first comment)");
-    command.flag("--bw,--black-and-white", args.black_and_white,
+    command.flag("--bw", args.black_and_white,
                  "Draw in black and white, for printers without colour (default: off)");
     command.flag("--diamonds", args.diamonds, "Number the diamonds (default: off)");
-    command.flag("--grid", args.grid, "Draw lines at each quarter of a diamond (default: off)");
-    command.flag("--no-speeds", args.speeds, "Leave out the speeds beside contacts (default: off)");
     command.option("--units", &args.units, "UNITS", "Units of speeds, positions and the radius")
         .one_of({kUnits[0], kUnits[1]});
 }
