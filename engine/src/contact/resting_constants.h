@@ -43,9 +43,11 @@ inline constexpr double kSlideNoise = 1e-16;
 inline constexpr double kNearer = 0.5;
 // [m] Largest gap of a contact that continues: an invisible fifth of the wavelength of light.
 inline constexpr double kGapLeft = 1e-7;
-// [m] Largest gap that a contact keeps if its normal turns, which leaves room on both sides.
+// [m] While its normal turns, a contact keeps a gap of at most this: half of kGapLeft, so that the gap may
+// grow or shrink without ending the contact.
 inline constexpr double kGapKept = 0.5 * kGapLeft;
-// [last intervals] A contact with a gap may close it in this time or more, without an impulse.
+// [-] A contact may close its gap without an impulse if that takes at least this many of the group's last
+// intervals.
 inline constexpr double kSlackTime = 4.0;
 // [of the speeds] Without dissipation, a contact rests only if it closes more slowly: --verify does not
 // notice the energy of its bounce.
@@ -68,8 +70,8 @@ inline constexpr double kFrictionError = 2e-7;
 // [s] Latest time at which a ball stopped by friction rests while others of its group move: the position
 // tolerance alone would let it creep for days.
 inline constexpr double kStopsWithin = 0.01;
-// [-] If an interval overruns a stop by less than this fraction, keep it as it is; if a stop comes equally
-// soon after it, try a longer one.
+// [-] A stop at most this fraction before the end of an interval does not shorten it; one at most this
+// fraction after the end lengthens it.
 // Without it: Jams.GapsHaveRoomForARate.
 inline constexpr double kSoon = 1e-2;
 // [rad] For a direction that turns by at most this angle, use the one at the middle of the interval.
