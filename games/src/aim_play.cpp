@@ -179,7 +179,7 @@ std::string missed(const Record& record, const Shot& shot, int ball) {
     if (shot.first_hits[0] != ball)
         return "the cue ball meets ball " + record.tracks[static_cast<std::size_t>(shot.first_hits[0])].id +
                " first";
-    for (const Touch& t : shot.touches)
+    for (const BallContact& t : shot.touches)
         if (t.cushion() && t.ball == shot.struck && t.time < shot.first_time)
             return "the cue ball meets a cushion first";
     return "";

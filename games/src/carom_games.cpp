@@ -106,7 +106,7 @@ bool opponents_counts(const State& state) {
 bool made_carom(const Facts& facts) {
     int cushions = 0;
     std::vector<int> met;
-    for (const Touch& touch : facts.shot.touches) {
+    for (const BallContact& touch : facts.shot.touches) {
         if (touch.ball != facts.shot.struck) continue;
         if (touch.cushion()) {
             cushions += touch.driven ? 1 : 0;
@@ -140,7 +140,7 @@ std::vector<Foul> carom_fouls(const Facts& facts) {
     if (state.game != &kFourBall) return fouls;
     if (!hits) fouls.push_back(Foul::kNoBallHit);
     const bool opponents =
-        std::any_of(facts.shot.touches.begin(), facts.shot.touches.end(), [&](const Touch& touch) {
+        std::any_of(facts.shot.touches.begin(), facts.shot.touches.end(), [&](const BallContact& touch) {
             return touch.ball == facts.shot.struck && !touch.cushion() && !is_red(facts.id(touch.other));
         });
     if (opponents && !opponents_counts(state)) fouls.push_back(Foul::kOpponentsBall);
@@ -192,7 +192,7 @@ Legal legal_sum_to_three(const State&, const std::vector<std::string>& balls) {
 Verdict judge_sum_to_three(const Facts& facts) {
     constexpr int kSum = 3;
     const auto cushions = std::count_if(facts.shot.touches.begin(), facts.shot.touches.end(),
-                                        [](const Touch& touch) { return touch.cushion(); });
+                                        [](const BallContact& touch) { return touch.cushion(); });
     std::vector<Foul> fouls;
     if (!facts.shot.out.empty()) fouls.push_back(Foul::kBallOff);
     const bool point = fouls.empty() && !facts.shot.first_hits.empty() && cushions == kSum;

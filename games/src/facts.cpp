@@ -26,7 +26,7 @@ bool is_bank(const Record& record, const Shot& shot, const Shot::Fallen& fallen)
     // [-] Of the table's width.
     constexpr double kFar = 0.25;
     const Vec2 pocket = record.table.pockets[static_cast<std::size_t>(fallen.pocket)].center;
-    return std::any_of(shot.touches.begin(), shot.touches.end(), [&](const Touch& touch) {
+    return std::any_of(shot.touches.begin(), shot.touches.end(), [&](const BallContact& touch) {
         if (!touch.cushion() || !touch.driven || touch.ball != fallen.ball) return false;
         return length(planar(record.state_at(touch.ball, touch.time).position) - pocket) >
                kFar * record.table.width;

@@ -15,31 +15,31 @@ namespace carom::games::detail {
 namespace {
 
 /// The struck ball's first contact with each ball that it hits, in order.
-std::vector<Touch> meetings(const PlayedShot& played) {
-    std::vector<Touch> met;
-    for (const Touch& touch : played.shot().touches) {
-        const bool again = std::any_of(met.begin(), met.end(),
-                                       [&](const Touch& before) { return before.other == touch.other; });
+std::vector<BallContact> meetings(const PlayedShot& played) {
+    std::vector<BallContact> met;
+    for (const BallContact& touch : played.shot().touches) {
+        const bool again = std::any_of(
+            met.begin(), met.end(), [&](const BallContact& before) { return before.other == touch.other; });
         if (!touch.cushion() && !again) met.push_back(touch);
     }
     return met;
 }
 
 /// The cushions that the struck ball is driven to before a contact; all if there is none.
-std::vector<Hit> cushions_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
+std::vector<Hit> cushions_before(const PlayedShot& played, const std::optional<BallContact>& meeting) {
     std::vector<Hit> hits = driven(played, played.struck());
     if (meeting) std::erase_if(hits, [&](const Hit& hit) { return hit.time >= meeting->time; });
     return hits;
 }
 
 /// The K-th ball that the struck ball hits, from 0.
-std::optional<Touch> meeting(const PlayedShot& played, std::size_t number) {
-    const std::vector<Touch> met = meetings(played);
+std::optional<BallContact> meeting(const PlayedShot& played, std::size_t number) {
+    const std::vector<BallContact> met = meetings(played);
     return number < met.size() ? std::optional(met[number]) : std::nullopt;
 }
 
 /// Number of cushions before a contact; NaN if there is none.
-double count_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
+double count_before(const PlayedShot& played, const std::optional<BallContact>& meeting) {
     return meeting ? double(cushions_before(played, meeting).size()) : kNone;
 }
 
@@ -51,7 +51,7 @@ std::string rail(const Cushion& cushion) {
 Texts route(const PlayedShot& played) {
     Texts rails;
     const Record& record = played.record;
-    const std::optional<Touch> second = meeting(played, 1);
+    const std::optional<BallContact> second = meeting(played, 1);
     for (const Hit& hit : cushions_before(played, second ? second : meeting(played, 0)))
         rails.push_back(hit.partner == Partner::kCushion
                             ? rail(record.table.cushions[static_cast<std::size_t>(hit.b)])
@@ -75,7 +75,7 @@ using V = MeasureValue;
 const MeasureRow kRouteRows[] = {
     {{"cushions_before", "BALL", "", "cushions before the struck ball hits this ball; empty if it does not"},
      [](P p, A of) -> V {
-         for (const Touch& touch : meetings(p))
+         for (const BallContact& touch : meetings(p))
              if (touch.other == of.ball) return count_before(p, touch);
          return kNone;
      }},
@@ -93,10 +93,10 @@ const MeasureRow kRouteRows[] = {
      }},
     {{"combination", "", "truth", "whether a ball fell that the struck ball did not hit"},
      [](P p, A) -> V {
-         const std::vector<Touch> met = meetings(p);
+         const std::vector<BallContact> met = meetings(p);
          return any_fell(p, [&met](const Shot::Fallen& fallen) {
              return std::none_of(met.begin(), met.end(),
-                                 [&](const Touch& t) { return t.other == fallen.ball; });
+                                 [&](const BallContact& t) { return t.other == fallen.ball; });
          });
      }},
     {{"carom", "", "truth", "whether the struck ball hits two balls"},

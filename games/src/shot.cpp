@@ -20,7 +20,7 @@ bool Shot::left(int ball) const {
 std::vector<int> Shot::driven_after(double time) const {
     std::vector<int> balls = out;
     for (const Fallen& f : pocketed) balls.push_back(f.ball);
-    for (const Touch& t : touches)
+    for (const BallContact& t : touches)
         if (t.cushion() && t.driven && t.time >= time) balls.push_back(t.ball);
     std::sort(balls.begin(), balls.end());
     balls.erase(std::unique(balls.begin(), balls.end()), balls.end());

@@ -42,7 +42,7 @@ inline Ai3603Shot ai3603_shot(const Record& record, bool solids, int left) {
     const int first = number(shot.first_hits[0]);
     if (left > 0 ? !own(first) : first != 8) return {.foul = true};
     const bool cushion =
-        std::any_of(shot.touches.begin(), shot.touches.end(), [&](const games::Touch& touch) {
+        std::any_of(shot.touches.begin(), shot.touches.end(), [&](const games::BallContact& touch) {
             return touch.cushion() && (touch.ball == shot.struck || touch.ball == shot.first_hits[0]);
         });
     if (!any && !cushion) return {.foul = true};

@@ -54,7 +54,7 @@ TEST(RealShots, AFrozenCushionCountsWhenTheBallReturns) {
         const Record record = simulate(plan);
         const Shot shot = shot_of(record);
         std::vector<bool> driven;
-        for (const games::Touch& t : shot.touches)
+        for (const games::BallContact& t : shot.touches)
             if (t.cushion() && t.ball == shot.struck) driven.push_back(t.driven);
         ASSERT_GE(driven.size(), 3u) << aim;
         EXPECT_FALSE(driven[0]) << aim;
@@ -62,7 +62,7 @@ TEST(RealShots, AFrozenCushionCountsWhenTheBallReturns) {
         // A sweep counts as the game does, whatever part of the shot it keeps.
         int before = 0;
         std::set<int> met;
-        for (const games::Touch& t : shot.touches) {
+        for (const games::BallContact& t : shot.touches) {
             if (t.ball != shot.struck) continue;
             if (t.cushion() && met.size() < 2) before += t.driven ? 1 : 0;
             if (!t.cushion()) met.insert(t.other);
@@ -97,9 +97,9 @@ TEST(RealShots, TheFirstBallHitMatchesTheOutcome) {
             EXPECT_EQ(shot.first_hits.empty() ? -1 : shot.first_hits.front(), outcome.first_hit)
                 << file << " " << k;
             for (int ball = 0; ball < static_cast<int>(outcome.balls.size()); ++ball) {
-                const int cushions = static_cast<int>(
-                    std::count_if(shot.touches.begin(), shot.touches.end(),
-                                  [ball](const games::Touch& t) { return t.cushion() && t.ball == ball; }));
+                const int cushions = static_cast<int>(std::count_if(
+                    shot.touches.begin(), shot.touches.end(),
+                    [ball](const games::BallContact& t) { return t.cushion() && t.ball == ball; }));
                 EXPECT_EQ(cushions, outcome.balls[static_cast<std::size_t>(ball)].cushions);
                 EXPECT_EQ(shot.fell(ball), outcome.balls[static_cast<std::size_t>(ball)].pocket >= 0);
                 EXPECT_EQ(shot.left(ball), outcome.balls[static_cast<std::size_t>(ball)].pocket == kOffTable);

@@ -18,7 +18,7 @@ Record played(const std::string& scene) {
 
 std::string met(const Record& record) {
     std::string ids;
-    for (const games::Touch& touch : games::shot_of(record).touches)
+    for (const games::BallContact& touch : games::shot_of(record).touches)
         if (!touch.cushion() && touch.time < 1.0)
             ids += record.tracks[static_cast<std::size_t>(touch.other)].id + " ";
     return ids;

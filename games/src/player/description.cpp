@@ -31,7 +31,7 @@ bool is_direct(const Record& record, int ball, double from, const Vec2& to) {
 }  // namespace
 
 ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fallen) {
-    for (const Touch& touch : shot.touches)
+    for (const BallContact& touch : shot.touches)
         if (touch.cushion() && touch.ball == shot.struck && touch.time < shot.first_time &&
             !is_direct(record, shot.struck, 0.0,
                        planar(record.state_at(shot.struck, shot.first_time).position)))

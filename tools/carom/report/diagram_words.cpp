@@ -24,7 +24,7 @@ std::string carom_words(const Record& record) {
         return "";
     int cushions = 0;
     std::vector<int> met;
-    for (const games::Touch& touch : games::shot_of(record).touches) {
+    for (const games::BallContact& touch : games::shot_of(record).touches) {
         if (touch.ball != record.events[0].a || met.size() == 2) continue;
         if (touch.cushion())
             cushions += touch.driven ? 1 : 0;

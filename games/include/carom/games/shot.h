@@ -10,14 +10,14 @@
 namespace carom::games {
 
 /// A contact of a ball. The start of a lasting contact counts as one contact.
-struct Touch {
+struct BallContact {
     double time = 0.0;  ///< [s]
     int ball = -1;
     int other = -1;  ///< the ball that it hit; -1 for a cushion or a jaw
     /// cushions: false if the ball was frozen to it from the start and had not left it
     bool driven = true;
     bool cushion() const { return other < 0; }
-    bool operator==(const Touch&) const = default;
+    bool operator==(const BallContact&) const = default;
 };
 
 /// Balls are indices into Record::tracks.
@@ -28,7 +28,7 @@ struct Shot {
     double first_time = 0.0;  ///< [s] of that hit
     /// Every contact of a ball with a cushion or a jaw, and every contact of the struck ball with another
     /// ball
-    std::vector<Touch> touches;
+    std::vector<BallContact> touches;
     struct Fallen {
         int ball, pocket;
         bool operator==(const Fallen&) const = default;
