@@ -46,7 +46,7 @@ inline constexpr double kGapLeft = 1e-7;
 // [m] While its normal turns, a contact keeps a gap of at most this: half of kGapLeft, so that the gap may
 // grow or shrink without ending the contact.
 inline constexpr double kGapKept = 0.5 * kGapLeft;
-// [-] A contact may close its gap without an impulse if that takes at least this many of the group's last
+// [-] A contact may close its gap without an impulse if that needs at least this many of the group's last
 // intervals.
 inline constexpr double kSlackTime = 4.0;
 // [of the speeds] Without dissipation, a contact rests only if it closes more slowly: --verify does not
