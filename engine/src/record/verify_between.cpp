@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/airborne.h"
@@ -50,7 +52,9 @@ class Between {
 
     std::optional<Violation> run() {
         for (const BallTrack& track : record_.tracks)
-            for (const Segment& s : track.segments) times_.push_back(s.start);
+            for (const Segment& s : track.segments)
+                // A stop may come before the end of a cluster, whose later segments are in the record.
+                if (s.start < record_.duration) times_.push_back(s.start);
         times_.push_back(record_.duration);
         std::sort(times_.begin(), times_.end());
         times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
@@ -195,12 +199,26 @@ class Between {
         const double near = R(i) + R(j) + p.reach + q.reach;
         const Vec2 apart = q.r - p.r;
         if (dot(apart, apart) > near * near) return;
-        const auto clear = [&](double t) { return length(place(i, t) - place(j, t)) - R(i) - R(j); };
+        const std::pair key(i, j);
+        const auto clear = [&](double t) {
+            const double gap = length(place(i, t) - place(j, t)) - R(i) - R(j);
+            if (gap > 0.0 && !left_.empty()) left_.erase(key);
+            return gap;
+        };
+        const Segment &a = segment(i), &b = segment(j);
+        const bool share = a.state == MotionState::kColliding && b.state == a.state && a.start == b.start;
         follow(from, to, std::min(R(i), R(j)), p.speed + q.speed, clear, [&](double t) {
             const SeenBall one = seen(i, t), other = seen(j, t);
-            const double gap = gap_between(one, other);
-            if (gap < -allowed_depth(one) - other.rounding && !share_cluster(record_, i, j, t))
-                report("U3", t, "balls {} and {} overlap by {:.3g} m", id(i), id(j), -gap);
+            const double depth = -gap_between(one, other), allowed = allowed_depth(one) + other.rounding;
+            const auto left = left_.find(key);
+            if (share)
+                left_[key] = depth;
+            else if (!(depth > allowed))
+                left_.erase(key);
+            else if (left != left_.end() && depth <= left->second + allowed)
+                left->second = std::min(left->second, depth);
+            else
+                report("U3", t, "balls {} and {} overlap by {:.3g} m", id(i), id(j), depth);
         });
     }
 
@@ -310,6 +328,9 @@ class Between {
     bool clusters_ = false;  // whether one took place since last_energy_
     const double rounding_;  // [J/kg]
     std::vector<Piece> pieces_;
+    // [m] Overlaps that a cluster left behind, because one of the two was hit before its end: each may only
+    // shrink.
+    std::map<std::pair<std::size_t, std::size_t>, double> left_;
     std::vector<double> times_;  // at which a segment begins
     double first_energy_ = 0.0, last_energy_ = 0.0;
     std::optional<Violation> found_;
@@ -323,21 +344,6 @@ BallState entering(const Record& record, std::size_t ball, const Segment& collid
     const Placed placed = placed_at(before, tau, record.gravity);
     const double R = record.size(static_cast<int>(ball)).R;
     return {before.state, placed.position, placed.velocity, spin_at(before, tau, R)};
-}
-
-bool share_cluster(const Record& record, std::size_t one, std::size_t other, double t) {
-    const auto any = [&](std::size_t ball, const auto& matches) {
-        const BallTrack& track = record.tracks[ball];
-        // Backwards, because the cluster is nearly always the last of the ball's segments.
-        for (std::size_t k = track.segment_at(t) + 1; k-- > 0;) {
-            const Segment& s = track.segments[k];
-            if (s.state == MotionState::kColliding && t < s.start + s.duration && matches(s)) return true;
-        }
-        return false;
-    };
-    return any(one, [&](const Segment& a) {
-        return any(other, [&](const Segment& b) { return a.start == b.start; });
-    });
 }
 
 double ball_energy(const Record& record, int ball, const BallState& state) {

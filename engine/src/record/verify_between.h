@@ -10,10 +10,6 @@ namespace carom {
 /// The state in which a ball enters a cluster: at the end of the segment before `colliding`, one of its own.
 BallState entering(const Record& record, std::size_t ball, const Segment& colliding);
 
-/// Whether a cluster moves both balls at time t, or would if neither had hit something else before its end:
-/// until then they may still overlap.
-bool share_cluster(const Record& record, std::size_t one, std::size_t other, double t);
-
 /// [J/kg] Energy of a ball, divided by the mass in [balls]; a ball in a pocket has none.
 double ball_energy(const Record& record, int ball, const BallState& state);
 

@@ -37,6 +37,9 @@ constexpr double kAtOnce = 1e-7;
 // [L/V] Contacts that nothing acts on are examined again when they are as near to closing.
 constexpr double kSoon = 0.25;
 
+// [-] From this unloading exponent on (e_b below 0.14), the force of a contact ends within a part of a step.
+constexpr int kPlastic = 128;
+
 constexpr int kLanes = 4;
 
 // Numbers per ball. Rows of four: (x, y, v_x, v_y), (R w_x, R w_y, R w_z, -), and in space (z, v_z, -, -). In
@@ -630,8 +633,10 @@ class Phase {
             const double rise = share < 1.0 ? 1.5 * (law_.a + law_.b * power) + law_.p * law_.b * power : 1.5;
             const double rate =
                 d > 0.0 ? square_root(d) * rise * rate_[c] * phase_.contact[c].stiffness : 0.0;
+            // A plastic contact lets go at its largest overlap, which is where a step begins.
+            const bool lets_go = law_.p >= kPlastic && F < 0.5 * force_[c];
             phase_.history[c].impulse +=
-                0.5 * h * (force_[c] + F) + (1.0 / 12.0) * h * h * (rises_[c] - rate);
+                lets_go ? h * F : 0.5 * h * (force_[c] + F) + (1.0 / 12.0) * h * h * (rises_[c] - rate);
             force_[c] = F;
             rises_[c] = rate;
         }
