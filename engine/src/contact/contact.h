@@ -20,6 +20,8 @@ struct Contact {
     /// The contact of another ball with the same part of the table.
     Contact of(int another) const { return {another, with, other}; }
     int partner() const { return with == With::kBall ? other : -1; }
+    bool is_nose() const { return with == With::kCushion || with == With::kNose; }
+    bool is_part() const { return is_nose() || with == With::kPocket; }
     /// Whether both are the same contact; the order of two balls does not matter.
     bool same(const Contact& c) const {
         return *this == c ||
@@ -27,9 +29,32 @@ struct Contact {
     }
 };
 
-/// Whether the part of the table is a jaw, not a cushion or its end.
-inline bool is_jaw(const Contact& c, const Geometry& geometry) {
-    return c.with == With::kNose && geometry.noses[c.other].type == EventType::kBallJaw;
+/// Calls f with the nose of a contact: a CushionLine or a Nose.
+template <class F>
+auto with_nose(const Geometry& geometry, const Contact& c, const F& f) {
+    return c.with == With::kNose ? f(geometry.noses[c.other]) : f(geometry.cushions[c.other]);
+}
+/// Calls f with the part of the table, which may also be a Pocket. Only these two functions tell the kinds of
+/// parts apart: what f needs of a part is an overload for each kind (touch.h, detect.h).
+template <class F>
+auto with_part(const Geometry& geometry, const Contact& c, const F& f) {
+    return c.with == With::kPocket ? f(geometry.pockets[c.other]) : with_nose(geometry, c, f);
+}
+/// Calls f(contact without a ball, part) for all parts.
+template <class F>
+void each_part(const Geometry& geometry, const F& f) {
+    const auto each = [&f](With with, const auto& parts) {
+        for (int i = 0; i < static_cast<int>(parts.size()); ++i) f(Contact{-1, with, i}, parts[i]);
+    };
+    each(With::kCushion, geometry.cushions);
+    each(With::kNose, geometry.noses);
+    each(With::kPocket, geometry.pockets);
+}
+
+inline Partner partner_of(const Contact& c, const Geometry& geometry) {
+    if (c.with == With::kBall) return Partner::kBall;
+    if (c.with == With::kPocket) return Partner::kPocket;
+    return with_nose(geometry, c, [](const auto& nose) { return nose.partner; });
 }
 
 /// The fields b and detail of an event of this contact (Event). @param place  of the ball

@@ -47,6 +47,8 @@ double time_past_end(const Geometry& geometry, const Contact& contact, const Pat
 
 /// Time until the centre enters the circle of a pocket; 0 if it is inside.
 double time_to_pocket(const Path& ball, const Vec2& center, double radius);
+/// [s] Time until a ball on a straight path leaves the circle from inside; kNever if it does not move.
+double time_to_edge(const Vec2& r, const Vec2& v, const Vec2& center, double radius);
 
 /// [-] Margins of the quick rejections: a share of the reach, and a share of the summed terms.
 inline constexpr double kApartShare = 1e-6;
@@ -118,5 +120,11 @@ inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reac
 
 /// The same for a straight line, on either side.
 bool stays_off_line(const Path& ball, const CushionLine& line, double R, double window);
+
+/// Time until a ball of radius R meets the part: a nose, or the circle of a pocket. kNever if a quick
+/// rejection finds that it stays away for the whole window.
+double time_to(const CushionLine& line, const Path& ball, double R, double window);
+double time_to(const Nose& nose, const Path& ball, double R, double window);
+double time_to(const Pocket& pocket, const Path& ball, double R, double window);
 
 }  // namespace carom

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "carom/engine/plan.h"
-#include "contact/contact.h"
+#include "contact/touch.h"
 #include "physics/cluster.h"
 
 namespace carom {
@@ -47,7 +47,7 @@ class NearSurfaces : public ClusterSurfaces {
     struct Reached {
         const Contact* part = nullptr;  // null: the cloth
         double time;                    // [s] 0: now
-        double closing = 0.0;           // [m/s]
+        Touch touch{};                  // of a part
     };
     Reached find(std::size_t member, const Placed& at, const Vec3& spin) const;
     template <class F>

@@ -8,7 +8,6 @@
 #include "loop/balls.h"
 #include "loop/cluster_surfaces.h"
 #include "loop/detector.h"
-#include "loop/memory.h"
 #include "physics/cluster.h"
 
 namespace carom {

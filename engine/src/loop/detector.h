@@ -16,9 +16,7 @@
 #include "loop/balls.h"
 #include "loop/box_search.h"
 #include "loop/event_queue.h"
-#include "loop/memory.h"
 #include "loop/resting_contacts.h"
-#include "loop/stopwatch.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -117,14 +115,12 @@ class Detector : private Borrowed<DetectorMemory> {
     void set_up_table();
     void find_parts(const RoundedBox& box);
     void search_table(int ball, const RoundedBox& whole);
-    double time_to(const Contact& contact, const Path& path, double window) const;
 
     // flight_search.cpp
     Flight flight(int ball, double from) const;
     double time_to_flight(int a, int b, double from) const;
     void search_table_in_air(int ball);
     double time_over_pocket(int pocket, const Path& path, double R) const;
-    bool over_pocket(const Vec2& here) const;
 
     /// The duration from one time to another, rounded up.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }

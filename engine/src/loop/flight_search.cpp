@@ -1,9 +1,8 @@
 // Search for contacts of flying balls.
 #include <algorithm>
 #include <limits>
-#include <vector>
 
-#include "contact/pocket_edge.h"
+#include "contact/touch.h"
 #include "loop/detector.h"
 
 namespace carom {
@@ -50,12 +49,6 @@ double time_over_jaw(const Path& path, const Vec2& center, double radius) {
 
 }  // namespace
 
-bool Detector::over_pocket(const Vec2& here) const {
-    const std::vector<Pocket>& pockets = plan_.geometry.pockets;
-    return std::any_of(pockets.begin(), pockets.end(),
-                       [&here](const Pocket& p) { return is_inside(p, here); });
-}
-
 // A flying ball hits noses at their height. Once over them it is out; it meets a pocket only at its far side.
 // Landing is a state transition. If the table has a bed, cloth may lie behind a cushion's line, but never
 // inside a jaw.
@@ -71,7 +64,8 @@ void Detector::search_table_in_air(int ball) {
     };
     if (table.bed) {
         const double t = flight_beyond(*table.bed, p.r, p.v);
-        if (t <= p.horizon && !over_pocket(p.r + t * p.v)) take_first({start + t, out}, first);
+        if (t <= p.horizon && pocket_around(plan_.geometry, p.r + t * p.v) < 0)
+            take_first({start + t, out}, first);
     }
     for (const int part : near_) {
         const Contact contact = parts_[part].of(ball);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/pocket_edge.h"
 #include "contact/touch.h"
 #include "loop/detector.h"
 
@@ -10,23 +9,14 @@ namespace carom {
 
 namespace {
 
-Box around(const Vec2& center, double reach) {
-    return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
+Box box_of(const CushionLine& line) {
+    const Vec2 to = line.from + line.length * line.direction;
+    return {std::min(line.from.x(), to.x()), std::min(line.from.y(), to.y()), std::max(line.from.x(), to.x()),
+            std::max(line.from.y(), to.y())};
 }
-
-bool same_places(const Geometry& a, const Geometry& b) {
-    const auto same = [](const auto& x, const auto& y, auto equal) {
-        return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
-    };
-    return same(a.cushions, b.cushions,
-                [](const CushionLine& p, const CushionLine& q) {
-                    return p.from == q.from && p.direction == q.direction && p.length == q.length;
-                }) &&
-           same(a.noses, b.noses,
-                [](const Nose& p, const Nose& q) { return p.center == q.center && p.radius == q.radius; }) &&
-           same(a.pockets, b.pockets, [](const Pocket& p, const Pocket& q) {
-               return p.center == q.center && p.radius == q.radius;
-           });
+template <class Round>
+Box box_of(const Round& part) {
+    return box_around(part.center, std::abs(part.radius));
 }
 
 }  // namespace
@@ -34,7 +24,7 @@ bool same_places(const Geometry& a, const Geometry& b) {
 // Most shots of a batch use the same table, so its boxes are kept.
 void Detector::set_up_table() {
     const Geometry& g = plan_.geometry;
-    if (table_search_ == plan_.table_search && same_places(g, table_)) return;
+    if (table_search_ == plan_.table_search && g == table_) return;
     table_ = g;
     table_search_ = plan_.table_search;
     const std::size_t count = g.cushions.size() + g.noses.size() + g.pockets.size();
@@ -42,21 +32,10 @@ void Detector::set_up_table() {
     parts_.clear();
     parts_.reserve(count);
     near_.reserve(count);
-    const auto add = [this](With with, std::size_t index, const Box& box) {
-        table_boxes_.place(static_cast<int>(parts_.size()), box);
-        parts_.push_back({-1, with, static_cast<int>(index)});
-    };
-    for (std::size_t i = 0; i < g.cushions.size(); ++i) {
-        const CushionLine& line = g.cushions[i];
-        const Vec2 to = line.from + line.length * line.direction;
-        add(With::kCushion, i,
-            {std::min(line.from.x(), to.x()), std::min(line.from.y(), to.y()),
-             std::max(line.from.x(), to.x()), std::max(line.from.y(), to.y())});
-    }
-    for (std::size_t i = 0; i < g.noses.size(); ++i)
-        add(With::kNose, i, around(g.noses[i].center, std::abs(g.noses[i].radius)));
-    for (std::size_t i = 0; i < g.pockets.size(); ++i)
-        add(With::kPocket, i, around(g.pockets[i].center, g.pockets[i].radius));
+    each_part(g, [this](const Contact& contact, const auto& part) {
+        table_boxes_.place(static_cast<int>(parts_.size()), box_of(part));
+        parts_.push_back(contact);
+    });
     table_boxes_.rebuild_if_due();
 }
 
@@ -80,12 +59,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
         return;
     }
     if (!translates(s.state)) {  // a resting ball inside a pocket's circle falls
-        for (const int part : near_) {
-            const Contact contact = parts_[part].of(ball);
-            if (contact.with == With::kPocket &&
-                is_inside(plan_.geometry.pockets[contact.other], planar(s.r)))
-                first = {s.start, contact};
-        }
+        if (const int over = pocket_around(plan_.geometry, planar(s.r)); over >= 0)
+            first = {s.start, {ball, With::kPocket, over}};
         return;
     }
     const Path p = path(ball, s.start);
@@ -101,39 +76,12 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
         // rejection.
         const Contact contact = parts_[part].of(ball);
         if (falls && contact.with == With::kPocket) continue;
-        const double t = time_to(contact, p, std::min(p.horizon, span(s.start, first.time)));
+        if (resting_.has(contact)) continue;
+        const double window = std::min(p.horizon, span(s.start, first.time)), R = balls_.radius(ball);
+        const double t =
+            with_part(plan_.geometry, contact, [&](const auto& one) { return time_to(one, p, R, window); });
         if (t < kNever) take_first({s.start + t, contact}, first);
     }
-}
-
-// [s] Time until the contact; kNever if the ball stays away for the whole window, or already has this
-// contact.
-double Detector::time_to(const Contact& contact, const Path& p, double window) const {
-    const double R = balls_.radius(contact.ball);
-    switch (contact.with) {
-        case With::kCushion: {
-            const CushionLine& c = plan_.geometry.cushions[contact.other];
-            if (stays_off_line(p, c, R, window) || resting_.has(contact)) return kNever;
-            return time_to_line(p, c, R);
-        }
-        case With::kNose: {
-            const Nose& n = plan_.geometry.noses[contact.other];
-            if (n.is_arc()) return resting_.has(contact) ? kNever : time_to_nose(p, n, R);
-            const double reach = turn_around(n, R);
-            if (stays_apart(p.r - n.center, p.v, p.a, reach, window) || resting_.has(contact)) return kNever;
-            return time_to_circle(p, n.center, reach);
-        }
-        case With::kPocket: {
-            const Pocket& k = plan_.geometry.pockets[contact.other];
-            if (stays_apart(p.r - k.center, p.v, p.a, k.radius, window)) return kNever;
-            return time_to_pocket(p, k.center, k.radius);
-        }
-        case With::kBall:
-        case With::kNothing:
-        case With::kOut:
-            break;
-    }
-    return kNever;
 }
 
 }  // namespace carom

@@ -60,11 +60,11 @@ double gap_between(const SeenBall& one, const SeenBall& two) {
 }
 
 double gap_to(const CushionLine& line, const SeenBall& ball) {
-    return beside(line, at(ball)) ? touch_line(line, at(ball)).gap : kNever;
+    return beside(line, at(ball)) ? touch_part(line, at(ball)).gap : kNever;
 }
 
 double gap_to(const Nose& nose, const SeenBall& ball) {
-    return beside(nose, at(ball)) ? touch_round(nose, at(ball)).gap : kNever;
+    return beside(nose, at(ball)) ? touch_part(nose, at(ball)).gap : kNever;
 }
 
 double gap_to_cloth(const SeenBall& ball) {

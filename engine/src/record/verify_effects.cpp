@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "contact/detect.h"
-#include "contact/pocket_edge.h"
 #include "contact/roots.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 
 namespace carom {

@@ -148,6 +148,12 @@ constexpr const EventKind& kind(EventType type) {
 constexpr const char* name(EventType type) {
     return kind(type).name;
 }
+/// The first type of this kind of change with this partner.
+constexpr EventType event_type(EventPhase phase, Partner partner) {
+    for (const EventKind& of : kEventKinds)
+        if (of.phase == phase && of.partner == partner) return of.type;
+    return EventType::kCueStrike;
+}
 /// Whether two balls, or a cluster of balls, collide.
 constexpr bool balls_collide(EventType type) {
     return kind(type).phase == EventPhase::kImpact && kind(type).partner == Partner::kBall;
