@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "carom/engine/math.h"
-#include "contact/flight.h"
-#include "physics/nose_reach.h"
+#include "contact/detect.h"
+#include "physics/reach.h"
 #include "reference/random_impacts.h"
 
 namespace carom {

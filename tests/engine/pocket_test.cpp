@@ -10,6 +10,7 @@
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "contact/detect.h"
+#include "contact/touch.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
 

@@ -11,7 +11,6 @@
 #include "carom/render/renderer.h"
 #include "draw/busy_tiles.h"
 #include "draw/mean_picture.h"
-#include "draw/screen_values.h"
 #include "render/hand_made.h"
 
 namespace carom::render {

@@ -1,9 +1,13 @@
 // A contact: a ball and the ball or part of the table that it touches or will touch.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "carom/engine/geometry.h"
+#include "carom/engine/vec.h"
 
 namespace carom {
 
@@ -35,7 +39,7 @@ auto with_nose(const Geometry& geometry, const Contact& c, const F& f) {
     return c.with == With::kNose ? f(geometry.noses[c.other]) : f(geometry.cushions[c.other]);
 }
 /// Calls f with the part of the table, which may also be a Pocket. Only these two functions tell the kinds of
-/// parts apart: what f needs of a part is an overload for each kind (touch.h, detect.h).
+/// parts apart; f calls functions that have an overload for each kind (touch.h, detect.h).
 template <class F>
 auto with_part(const Geometry& geometry, const Contact& c, const F& f) {
     return c.with == With::kPocket ? f(geometry.pockets[c.other]) : with_nose(geometry, c, f);
@@ -84,6 +88,16 @@ inline Contact contact_of(const Event& event) {
             break;
     }
     return {event.a};
+}
+
+/// An order that reflections in the axes and quarter turns preserve, except for the order of mirror images
+/// among themselves.
+inline bool before_place(const Vec2& p, const Vec2& q) {
+    const auto key = [](const Vec2& a) {
+        const double x = std::abs(a.x()), y = std::abs(a.y());
+        return std::array<double, 4>{std::max(x, y), std::min(x, y), a.y(), a.x()};
+    };
+    return key(p) < key(q);
 }
 
 }  // namespace carom

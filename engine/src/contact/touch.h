@@ -1,6 +1,6 @@
 // The geometry of a contact: its direction, its gap, and how fast the gap closes. One function per kind of
 // part: another ball, a straight nose, a round nose (a point if its radius is 0, a wall around the balls if
-// it is negative), the edge of a pocket, the cloth. docs/design/extending.md lists what a new kind needs.
+// it is negative), the edge of a pocket, the cloth. docs/design/extending.md lists the files of a new kind.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "carom/engine/tolerances.h"
 #include "carom/engine/vec.h"
 #include "contact/contact.h"
-#include "physics/nose_reach.h"
+#include "physics/reach.h"
 
 namespace carom {
 

@@ -1,10 +1,12 @@
-#include "loop/cluster_surfaces.h"
+// Cushions and jaws near a cluster, which act by the scene's own law, and the cloth under its balls in space.
+#include "loop/clusters.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "carom/engine/airborne.h"
 #include "contact/roots.h"

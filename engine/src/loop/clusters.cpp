@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "carom/engine/airborne.h"
-#include "contact/place.h"
+#include "contact/contact.h"
 #include "contact/touch.h"
 
 namespace carom {

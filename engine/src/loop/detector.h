@@ -12,7 +12,6 @@
 
 #include "contact/contact.h"
 #include "contact/detect.h"
-#include "contact/flight.h"
 #include "loop/balls.h"
 #include "loop/box_search.h"
 #include "loop/event_queue.h"

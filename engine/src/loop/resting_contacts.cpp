@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "carom/engine/tolerances.h"
-#include "contact/place.h"
+#include "contact/contact.h"
 #include "contact/resting_constants.h"
 #include "contact/touch.h"
 #include "physics/motion.h"

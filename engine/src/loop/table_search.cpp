@@ -1,6 +1,7 @@
-// Search for contacts of balls with the table: straight cushions, round noses, pockets.
+// Search for contacts of balls with the table, and of flying balls with anything.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/touch.h"
 #include "loop/detector.h"
@@ -81,6 +82,84 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
         const double t =
             with_part(plan_.geometry, contact, [&](const auto& one) { return time_to(one, p, R, window); });
         if (t < kNever) take_first({s.start + t, contact}, first);
+    }
+}
+
+// The motion of a ball from the time `from`, with its height.
+Flight Detector::flight(int ball, double from) const {
+    const Segment& s = balls_.segment(ball);
+    const double tau = from - s.start;
+    const Placed placed = placed_at(s, tau, plan_.gravity);
+    return {placed.position, placed.velocity,
+            Vec3(s.a.x(), s.a.y(), is_off_cloth(s.state) ? -plan_.gravity : 0.0),
+            std::max(0.0, s.duration - tau),
+            kClosingUlp * std::numeric_limits<double>::epsilon() *
+                (length3(placed.velocity) + mover_[ball].surface)};
+}
+
+// [s] Time from `from` until two balls collide, at least one of which flies or falls into a pocket.
+double Detector::time_to_flight(int a, int b, double from) const {
+    const Flight one = flight(a, from), two = flight(b, from);
+    const Flight relative{two.r - one.r, two.v - one.v, two.a - one.a, std::min(one.horizon, two.horizon),
+                          one.noise + two.noise};
+    return flight_to_ball(relative, balls_.radius(a) + balls_.radius(b));
+}
+
+// [s] Time until a ball flying over a pocket leaves its circle on the side without cloth.
+double Detector::time_over_pocket(int index, const Path& path, double R) const {
+    const Pocket& pocket = plan_.geometry.pockets[index];
+    const double enters = time_to_pocket(path, pocket.center, pocket.radius);
+    if (enters == kNever) return kNever;
+    const double leaves =
+        enters + time_to_edge(path.r + enters * path.v, path.v, pocket.center, pocket.radius);
+    const bool back = is_bed(plan_.scene.table, pocket, path.r + leaves * path.v, R);
+    return back || leaves > path.horizon ? kNever : leaves;
+}
+
+namespace {
+
+// [s] Time until the centre is over the disc of a jaw, which ends the search for its nose. flight_over_disc()
+// adds grazes that time_to_circle() skips, and a centre that is over it already.
+double time_over_jaw(const Path& path, const Vec2& center, double radius) {
+    const double over = time_to_circle(path, center, radius);
+    return over < kNever ? over : flight_over_disc(path.r - center, path.v, radius, path.horizon);
+}
+
+}  // namespace
+
+// A flying ball hits noses at their height. Once over them it is out; it meets a pocket only at its far side.
+// Landing is a state transition. If the table has a bed, cloth may lie behind a cushion's line, but never
+// inside a jaw.
+void Detector::search_table_in_air(int ball) {
+    PredictedEvent& first = mover_[ball].table;
+    const double start = balls_.segment(ball).start, R = balls_.radius(ball);
+    const Flight f = flight(ball, start);
+    const Path p = path(ball, start);
+    const Table& table = plan_.scene.table;
+    const Contact out{ball, With::kOut, -1};
+    const auto leaves = [&](double t) {
+        if (t < kNever) take_first({start + t, out}, first);
+    };
+    if (table.bed) {
+        const double t = flight_beyond(*table.bed, p.r, p.v);
+        if (t <= p.horizon && pocket_around(plan_.geometry, p.r + t * p.v) < 0)
+            take_first({start + t, out}, first);
+    }
+    for (const int part : near_) {
+        const Contact contact = parts_[part].of(ball);
+        double t = kNever;
+        if (contact.with == With::kCushion) {
+            const CushionLine& c = plan_.geometry.cushions[contact.other];
+            t = flight_to_line(f, c, R);
+            if (!table.bed) leaves(flight_over_line(f, c));
+        } else if (contact.with == With::kNose) {
+            const Nose& n = plan_.geometry.noses[contact.other];
+            t = flight_to_nose(f, n, R);
+            if (n.radius > 0.0) leaves(time_over_jaw(p, n.center, n.radius));
+        } else {
+            t = time_over_pocket(contact.other, p, R);
+        }
+        if (t < kNever) take_first({start + t, contact}, first);
     }
 }
 

@@ -18,8 +18,6 @@
 #include "physics/cue.h"
 #include "physics/motion.h"
 #include "plan/effects.h"
-#include "plan/reach.h"
-#include "plan/words.h"
 
 namespace carom {
 

@@ -1,10 +1,11 @@
-#include "record/verify_events.h"
+// Compares the events of a record with its segments, and computes every impact again.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,10 +18,8 @@
 #include "physics/cue.h"
 #include "physics/cushion/bounce.h"
 #include "physics/motion.h"
-#include "physics/touch_tolerance.h"
-#include "record/gaps.h"
-#include "record/verify_hits.h"
-#include "record/verify_motion.h"
+#include "physics/reach.h"
+#include "record/verify_parts.h"
 
 namespace carom {
 namespace {

@@ -12,8 +12,7 @@
 #include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
 #include "contact/touch.h"
-#include "physics/nose_reach.h"
-#include "physics/touch_tolerance.h"
+#include "physics/reach.h"
 #include "scene/sections.h"
 
 namespace carom::detail {

@@ -10,8 +10,8 @@
 #include <system_error>
 
 #include "carom/engine/tolerances.h"
+#include "scene/reader.h"
 #include "scene/sections.h"
-#include "scene/toml_depth.h"
 
 namespace carom {
 namespace {

@@ -1,9 +1,11 @@
-#include "scene/toml_depth.h"
+#include "scene/reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <string_view>
 
 #include "carom/engine/tolerances.h"
 

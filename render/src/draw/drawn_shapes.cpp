@@ -1,9 +1,11 @@
-#include "draw/drawn_shapes.h"
+// The cue, lines and boxes of a picture, and the pixels that they may cover.
+#include "draw/drawn_balls.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace carom::render {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "draw/drawn_shapes.h"
+#include "draw/drawn_balls.h"
 #include "draw/paint_shapes.h"
 
 namespace carom::render {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "base/file_lock.h"
+#include "base/output_file.h"
 #include "carom/engine/tolerances.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/kept_png.h"

@@ -1,4 +1,5 @@
-#include "report/diagram_words.h"
+// The words below a drawing of a shot.
+#include "report/diagram_page.h"
 
 #include <fmt/format.h>
 

@@ -102,6 +102,13 @@ constexpr auto names_of(Partner) {
     return std::array{"cloth", "ball", "cushion", "jaw", "pocket"};
 }
 
+/// Calls f with the list of the table's parts that Event::b indexes. @param partner  not kNone or kBall
+template <class F>
+auto with_parts(const Table& table, Partner partner, const F& f) {
+    if (partner == Partner::kJaw) return f(table.jaws);
+    return partner == Partner::kPocket ? f(table.pockets) : f(table.cushions);
+}
+
 /// The kind of change for the ball.
 enum class EventPhase : std::uint8_t {
     kStrike,      ///< the cue hits it

@@ -7,7 +7,7 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
-#include "commands/export/shot_gltf.h"
+#include "commands/export/gltf.h"
 #include "report/table.h"
 
 namespace carom::tools {

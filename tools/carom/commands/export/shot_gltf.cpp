@@ -1,4 +1,4 @@
-#include "commands/export/shot_gltf.h"
+// A shot as glTF: the table, the balls, and their motion as one animation.
 
 #include <cmath>
 #include <cstddef>
@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,8 +16,6 @@
 #include "carom/render/look.h"
 #include "carom/render/png.h"
 #include "commands/export/gltf.h"
-#include "commands/export/keys.h"
-#include "commands/export/table_parts.h"
 
 namespace carom::tools {
 namespace {
