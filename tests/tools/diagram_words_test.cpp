@@ -1,5 +1,5 @@
 // The words below a drawing and the title above it.
-#include "report/diagram_page.h"
+#include "report/diagram_words.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // its first contact with the table and its first contact with another ball. Boxes exclude everything that a
 // ball cannot reach before its own next event (broad phase), closed forms give the times of the remaining
 // contacts (contact/detect.h), and a queue orders the earliest times of all balls. Implemented in
-// detector.cpp (the order), pair_search.cpp, table_search.cpp and flight_search.cpp.
+// detector.cpp (the order), pair_search.cpp and table_search.cpp.
 #pragma once
 
 #include <algorithm>
@@ -115,7 +115,7 @@ class Detector : private Borrowed<DetectorMemory> {
     void find_parts(const RoundedBox& box);
     void search_table(int ball, const RoundedBox& whole);
 
-    // flight_search.cpp
+    // table_search.cpp, in the air
     Flight flight(int ball, double from) const;
     double time_to_flight(int a, int b, double from) const;
     void search_table_in_air(int ball);

@@ -1,8 +1,8 @@
 // Distances at which a ball touches: a nose, or anything within rounding.
 #pragma once
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 
 #include "carom/engine/tolerances.h"
 #include "carom/engine/vec.h"

@@ -26,7 +26,7 @@ int balls_of(const Rack& rack);
 ///
 /// With rack.radius_sd, the radii are normal about R, truncated at 2.5 standard deviations, from their own
 /// stream of draws. Unlike balls of a rack are pressed together until neighbours are rack.gap apart
-/// (press.h), then jittered.
+/// (press()), then jittered.
 ///
 /// The apex, or rack.spot_ball (which must be in the rack), is at rack.position, by default the foot spot
 /// (snooker: behind the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg about

@@ -1,16 +1,63 @@
-// EGL without a surface or display server. It replaces OSMesa, which Mesa 25.1 removed.
-//
-// The few types and constants of EGL 1.5 that are needed
-// are declared here, so that the build needs no EGL header.
+#include <dlfcn.h>
+
+#include "carom/render/backend.h"
+
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "carom/render/error.h"
 #include "gl/context.h"
 #include "gl/shared_library.h"
 
-namespace carom::render::gl {
+namespace carom::render {
+
+Backend default_backend() {
+    static const Backend found = gl::has_osmesa() ? Backend::kOsmesa : Backend::kEgl;
+    return found;
+}
+
+Backend backend_from_name(std::string_view text) {
+    for (const Backend backend : {Backend::kAuto, Backend::kOsmesa, Backend::kEgl})
+        if (text == name(backend)) return backend;
+    throw RenderError("unknown OpenGL back end '" + std::string(text) + "'; use auto, osmesa or egl");
+}
+
+const char* name(Backend backend) {
+    if (backend == Backend::kAuto) return "auto";
+    return backend == Backend::kOsmesa ? "osmesa" : "egl";
+}
+
+std::unique_ptr<gl::Context> gl::make_context(Backend backend) {
+    if (backend == Backend::kAuto) backend = default_backend();
+    return backend == Backend::kOsmesa ? make_osmesa_context() : make_egl_context();
+}
+
+SharedLibrary::SharedLibrary(std::initializer_list<const char*> names, std::string package)
+    : package_(std::move(package)) {
+    std::string reason;
+    for (const char* name : names) {
+        library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+        if (library_ != nullptr) return;
+        if (reason.empty()) reason = dlerror();
+    }
+    throw RenderError(std::string("cannot load ") + *names.begin() + " (" + reason +
+                      "); install the Debian package " + package_);
+}
+
+SharedLibrary::Function SharedLibrary::operator[](const char* symbol) const {
+    if (void* address = dlsym(library_, symbol)) return {address};
+    throw RenderError("the library of the Debian package " + package_ + " lacks " + symbol);
+}
+
+// EGL without a surface or display server. It replaces OSMesa, which Mesa 25.1 removed.
+//
+// The few types and constants of EGL 1.5 that are needed
+// are declared here, so that the build needs no EGL header.
+
+namespace gl {
 namespace {
 
 using Handle = void*;  // EGLDisplay, EGLContext, EGLSurface, EGLConfig
@@ -156,4 +203,6 @@ std::unique_ptr<Context> make_osmesa_context() {
     return std::make_unique<OsmesaContext>();
 }
 
-}  // namespace carom::render::gl
+}  // namespace gl
+
+}  // namespace carom::render

@@ -193,28 +193,6 @@ void add_ghost(DrawList& list, const Record& record, double t) {
     }
 }
 
-}  // namespace
-
-void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
-                 std::optional<FrameBudget> cost) {
-    if (overlay.trails) {
-        for (std::size_t i = 0; i < record.tracks.size(); ++i) {
-            const BallTrack& track = record.tracks[i];
-            const BallStyle style = ball_style(track.id, record.table.preset, static_cast<int>(i));
-            const Rgba color{style.color[0], style.color[1], style.color[2], 1.0F};
-            add_trail(list, track, t, line_width(list, 3.0), overlay.ball_trails ? &color : nullptr);
-        }
-    }
-    if (overlay.events) add_events(list, record, t);
-    if (overlay.ghost) add_ghost(list, record, t);
-    if (overlay.spin) add_spin(list, record, t);
-    if (overlay.diamonds) add_diamond_numbers(list, record.table);
-    if (overlay.clock) add_clock(list, t);
-    if (overlay.margin && cost) add_margin_bar(list, *cost);
-}
-
-namespace {
-
 constexpr Rgba kPanel{0.0F, 0.0F, 0.0F, 0.60F};      // background of the panels
 constexpr Rgba kTextInk{0.97F, 0.97F, 0.95F, 1.0F};  // text
 
@@ -233,11 +211,11 @@ double side_room(const DrawList& list) {
 // [-] Width of one character divided by the height of a capital letter.
 constexpr double kAdvance = 0.92;
 
-}  // namespace
-
 double text_width(double height, std::string_view text) {
     return height * kAdvance * static_cast<double>(text.size());
 }
+
+}  // namespace
 
 void add_text(DrawList& list, const Vec2& at, double height, std::string_view text, const Rgba& color) {
     // A cell of the atlas is 6 x 9 units; the capital in its centre is 4 x 6 units.
@@ -253,6 +231,8 @@ void add_text(DrawList& list, const Vec2& at, double height, std::string_view te
     }
 }
 
+namespace {
+
 void add_clock(DrawList& list, double t) {
     const double height = text_height(list), room = 0.6 * height;
     const std::string text = fmt::format("{:.3f} s", t);
@@ -262,6 +242,7 @@ void add_clock(DrawList& list, double t) {
     add_text(list, {left + room, 2.0 * room}, height, text, kTextInk);
 }
 
+/// The numbers of the table's diamonds, on its cushions.
 void add_diamond_numbers(DrawList& list, const Table& table) {
     const double nose = table.cushions.empty() ? 0.0 : table.cushions.front().height;
     for (const auto& [at, number] : diamond_numbers(table, *list.table)) {
@@ -285,6 +266,26 @@ void add_margin_bar(DrawList& list, const FrameBudget& cost) {
     const double x = left + room, bottom = top + 0.7 * height;
     list.boxes.push_back({{x, top}, {x + share * width, bottom}, share <= 0.5 ? good : bad, -1});
     list.boxes.push_back({{x + 0.5 * width - 1.0, top}, {x + 0.5 * width + 1.0, bottom}, mark, -1});
+}
+
+}  // namespace
+
+void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
+                 std::optional<FrameBudget> cost) {
+    if (overlay.trails) {
+        for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+            const BallTrack& track = record.tracks[i];
+            const BallStyle style = ball_style(track.id, record.table.preset, static_cast<int>(i));
+            const Rgba color{style.color[0], style.color[1], style.color[2], 1.0F};
+            add_trail(list, track, t, line_width(list, 3.0), overlay.ball_trails ? &color : nullptr);
+        }
+    }
+    if (overlay.events) add_events(list, record, t);
+    if (overlay.ghost) add_ghost(list, record, t);
+    if (overlay.spin) add_spin(list, record, t);
+    if (overlay.diamonds) add_diamond_numbers(list, record.table);
+    if (overlay.clock) add_clock(list, t);
+    if (overlay.margin && cost) add_margin_bar(list, *cost);
 }
 
 }  // namespace carom::render

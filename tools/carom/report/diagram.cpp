@@ -24,6 +24,7 @@
 #include "carom/render/table_mesh.h"
 #include "page/table_shape.h"
 #include "report/diagram_page.h"
+#include "report/diagram_words.h"
 
 namespace carom::tools {
 namespace {

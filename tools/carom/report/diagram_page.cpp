@@ -77,6 +77,8 @@ std::string cairo_page(const std::string& format, const PaintPage& paint) {
     return bytes;
 }
 
+// Charts on paper of cairo.
+
 namespace {
 
 class CairoPaper : public Paper {

@@ -8,9 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/shown_units.h"
-#include "carom/engine/record.h"
-#include "carom/engine/scene.h"
 #include "report/diagram.h"
 
 namespace carom::tools {
@@ -24,13 +21,5 @@ std::string cairo_page(const std::string& format, const PaintPage& paint);
 /// The drawing of draw_diagram. @return its width and height [points]
 std::pair<double, double> paint_diagram(cairo_t* cr, const std::vector<DiagramShot>& shots,
                                         const DiagramStyle& style);
-
-std::string stroke_words(const Cue& cue, Units units);
-
-/// Initial positions of a few balls, from the corner of the table, and their radius; "" for many balls.
-std::string places_words(const Record& record, Units units);
-
-/// The balls that fall, or whether a carom shot scores a point, and the duration of the shot.
-std::string outcome_words(const Record& record);
 
 }  // namespace carom::tools

@@ -1,5 +1,4 @@
-// The words below a drawing of a shot.
-#include "report/diagram_page.h"
+#include "report/diagram_words.h"
 
 #include <fmt/format.h>
 
