@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "base/rounds.h"
 #include "support/graze_oracle.h"
 #include "support/graze_pairs.h"
 

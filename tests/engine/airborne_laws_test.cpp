@@ -11,7 +11,7 @@
 #include "carom/engine/math.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
-#include "physics/nose_reach.h"
+#include "physics/reach.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
 

@@ -182,10 +182,10 @@ TEST(Detector, SkipsRestingContacts) {
     add_ball(scene, "b", {0.0, 2.0 * R, R}, {0.0, 0.1, 0.0}, {-0.1 / R, 0.0, 0.0});
     Parts parts(scene);
     const Contact contact{0, With::kBall, 1};
-    ContactKinematics approach = kinematics_of(parts.plan, parts.balls, 0, 1);
-    approach.a_c = 1.0;  // pressed together but not closing: no bounce
+    Meeting met = parts.balls.meet(contact);
+    met.pressing = 1.0;  // pressed together but not closing: no bounce
     EXPECT_FALSE(parts.resting.has(contact));
-    ASSERT_TRUE(parts.resting.try_hold(approach, scene.balls.e_b));
+    ASSERT_TRUE(parts.resting.try_hold(met, scene.balls.e_b));
     EXPECT_TRUE(parts.resting.has(contact));
     EXPECT_TRUE(parts.resting.has({1, With::kBall, 0}));
     parts.detector.update(parts.log.touched());

@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "carom/engine/math.h"
-#include "contact/flight.h"
-#include "physics/nose_reach.h"
+#include "contact/detect.h"
+#include "physics/reach.h"
 #include "reference/random_impacts.h"
 
 namespace carom {
@@ -23,7 +23,7 @@ Flight flight(const Vec3& r, const Vec3& v, const Vec3& a, double horizon = 10.0
 }
 
 Nose round_nose(const Vec2& center, double radius, double height) {
-    return {center, radius, height, EventType::kBallJaw, 0};
+    return {center, radius, height, Partner::kJaw, 0};
 }
 
 TEST(Flight, TimesOfTheReference) {

@@ -9,7 +9,8 @@
 
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
-#include "contact/pocket_edge.h"
+#include "contact/detect.h"
+#include "contact/touch.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
 

@@ -10,7 +10,7 @@
 
 #include "carom/engine/tolerances.h"
 #include "scene/distribution.h"
-#include "scene/toml_depth.h"
+#include "scene/reader.h"
 #include "support/scene_errors.h"
 
 namespace carom::test {

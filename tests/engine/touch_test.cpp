@@ -21,7 +21,7 @@ constexpr double kTouchR = 0.03, kHeight = 0.04, kInset = 0.001;
 const CushionLine kLine{{0.1, 0.2}, {0.6, 0.8}, 0.5, kHeight, kInset};
 
 Nose nose(double radius, double inset = kInset, const ArcSpan& span = {}) {
-    return {{0.3, -0.1}, radius, kHeight, EventType::kBallJaw, 0, inset, span};
+    return {{0.3, -0.1}, radius, kHeight, Partner::kJaw, 0, inset, span};
 }
 
 Ball ball_at(const Vec3& r, bool flies = false, double R = kTouchR) {
@@ -48,12 +48,12 @@ TEST(Touch, BallsInSpaceAndOnTheCloth) {
 TEST(Touch, StraightNoses) {
     for (const double side : {1.0, -1.0}) {
         const Vec2 place = kLine.from + 0.2 * kLine.direction + side * 0.05 * Vec2(-0.8, 0.6);
-        const Touch level = touch_line(kLine, ball_at({place.x(), place.y(), 9.0}));
+        const Touch level = touch_part(kLine, ball_at({place.x(), place.y(), 9.0}));
         expect_near(level.n, side * Vec3(0.8, -0.6, 0.0));
         EXPECT_NEAR(level.gap, 0.05 - (kTouchR - kInset), 1e-15);
         EXPECT_EQ(level.bend, 0.0);
         // From above: 0.05 aside and 0.12 up, 0.13 away.
-        const Touch space = touch_line(kLine, ball_at({place.x(), place.y(), kHeight + 0.12}, true));
+        const Touch space = touch_part(kLine, ball_at({place.x(), place.y(), kHeight + 0.12}, true));
         expect_near(space.n, Vec3(side * 0.8 * 5.0, side * -0.6 * 5.0, -12.0) / 13.0);
         EXPECT_NEAR(space.gap, 0.13 - std::hypot(kTouchR - kInset, kHeight - kTouchR), 1e-15);
     }
@@ -64,12 +64,12 @@ TEST(Touch, RoundNosesFromOutsideAndInside) {
     const auto at = [&](double z, bool flies) { return ball_at({place.x(), place.y(), z}, flies); };
     for (const double radius : {0.02, 0.0, -0.3}) {
         const double sign = radius < 0.0 ? -1.0 : 1.0;
-        const Touch level = touch_round(nose(radius), at(0.0, false));
+        const Touch level = touch_part(nose(radius), at(0.0, false));
         expect_near(level.n, -sign * Vec3(0.6, 0.8, 0.0));
         EXPECT_NEAR(level.gap, sign * 0.1 - radius - (kTouchR - kInset), 1e-15) << radius;
     }
     // 0.05 outside the circle and 0.12 above it, 0.13 away.
-    const Touch space = touch_round(nose(0.05), at(kHeight + 0.12, true));
+    const Touch space = touch_part(nose(0.05), at(kHeight + 0.12, true));
     expect_near(space.n, Vec3(-0.6 * 5.0, -0.8 * 5.0, -12.0) / 13.0);
     EXPECT_NEAR(space.gap, 0.13 - std::hypot(kTouchR - kInset, kHeight - kTouchR), 1e-15);
 }
@@ -103,11 +103,15 @@ std::vector<Kind> kinds() {
                              return flies ? touch_ball(b, other) : touch_level(b, other, false);
                          }});
         kinds.push_back(
-            {"line" + where, flies, at(flies, [](const Ball& b) { return touch_line(kLine, b); })});
+            {"line" + where, flies, at(flies, [](const Ball& b) { return touch_part(kLine, b); })});
+        if (!flies)
+            kinds.push_back({"edge", flies, [](const Ball& b) {
+                                 return touch_part(Pocket{"p", {0.3, -0.1}, 0.06, 0.1}, b);
+                             }});
         for (const double radius : {0.02, 0.0, -0.3})
             if (!flies || radius >= 0.0)
                 kinds.push_back({"round " + std::to_string(radius) + where, flies,
-                                 at(flies, [=](const Ball& b) { return touch_round(nose(radius), b); })});
+                                 at(flies, [=](const Ball& b) { return touch_part(nose(radius), b); })});
     }
     return kinds;
 }

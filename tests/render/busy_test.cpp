@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "carom/render/renderer.h"
-#include "draw/busy_tiles.h"
 #include "draw/mean_picture.h"
-#include "draw/screen_values.h"
+#include "draw/table_edges.h"
 #include "render/hand_made.h"
 
 namespace carom::render {

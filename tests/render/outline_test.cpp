@@ -1,5 +1,5 @@
 // The outline of a table as triangles.
-#include "stage/outline.h"
+#include "stage/mesh_builder.h"
 
 #include <gtest/gtest.h>
 

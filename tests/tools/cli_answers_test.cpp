@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/file_lock.h"
+#include "base/output_file.h"
 #include "cli.h"
 
 namespace carom::test {

@@ -18,7 +18,6 @@
 #include <thread>
 #include <vector>
 
-#include "base/file_lock.h"
 #include "base/output_file.h"
 #include "carom/engine/printable.h"
 #include "cli.h"

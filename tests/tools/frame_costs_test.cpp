@@ -1,5 +1,5 @@
 // Every event belongs to exactly one frame, and the sums are complete.
-#include "base/frame_costs.h"
+#include "base/margin.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A file that is complete or absent: written under a temporary name, then renamed.
+// Files that are complete or absent (written under a temporary name, then renamed), and locks of files.
 #pragma once
 
 #include <cstdio>
@@ -59,6 +59,22 @@ class OutputFile {
     std::FILE* file_ = nullptr;
     /// of the temporary file, until it is renamed: unlocked temporary files may be removed
     int lock_ = -1;
+};
+
+/// Locks files for its own lifetime, by means of an empty file next to them. The lock file is removed at the
+/// end; one left by a killed program is reused.
+class FileLock {
+  public:
+    /// @param alone  false: other users with `alone` false may also use the files
+    /// @throws std::runtime_error naming the file, also if another program has the lock
+    FileLock(std::string name, bool alone);
+    ~FileLock();
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+  private:
+    std::string name_;
+    int fd_ = -1;
 };
 
 }  // namespace carom

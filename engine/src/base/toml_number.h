@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "carom/engine/field.h"
 
@@ -22,5 +23,10 @@ inline constexpr Interval kAnyNumber = {-0x1.fffffffffffffp1023, false, 0x1.ffff
 /// @throws std::invalid_argument with the fault, to follow the value's name
 double number_in(const toml::node& node, const Interval& allowed = kAnyNumber);
 std::int64_t integer_in(const toml::node& node, std::int64_t low = INT64_MIN, std::int64_t high = INT64_MAX);
+
+/// The number in the unit `wanted` of a key ("m", "m/s", "kg", "s", "degrees"). Units that differ by a power
+/// of ten give the same bits as the number written out: "57.15 mm" is 0.05715.
+/// @throws std::invalid_argument with the fault and the available units, to follow the key's name
+double number_with_unit(std::string_view text, std::string_view wanted);
 
 }  // namespace carom::detail

@@ -1,9 +1,13 @@
 // A contact: a ball and the ball or part of the table that it touches or will touch.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "carom/engine/geometry.h"
+#include "carom/engine/vec.h"
 
 namespace carom {
 
@@ -20,6 +24,8 @@ struct Contact {
     /// The contact of another ball with the same part of the table.
     Contact of(int another) const { return {another, with, other}; }
     int partner() const { return with == With::kBall ? other : -1; }
+    bool is_nose() const { return with == With::kCushion || with == With::kNose; }
+    bool is_part() const { return is_nose() || with == With::kPocket; }
     /// Whether both are the same contact; the order of two balls does not matter.
     bool same(const Contact& c) const {
         return *this == c ||
@@ -27,9 +33,32 @@ struct Contact {
     }
 };
 
-/// Whether the part of the table is a jaw, not a cushion or its end.
-inline bool is_jaw(const Contact& c, const Geometry& geometry) {
-    return c.with == With::kNose && geometry.noses[c.other].type == EventType::kBallJaw;
+/// Calls f with the nose of a contact: a CushionLine or a Nose.
+template <class F>
+auto with_nose(const Geometry& geometry, const Contact& c, const F& f) {
+    return c.with == With::kNose ? f(geometry.noses[c.other]) : f(geometry.cushions[c.other]);
+}
+/// Calls f with the part of the table, which may also be a Pocket. Only these two functions tell the kinds of
+/// parts apart; f calls functions that have an overload for each kind (touch.h, detect.h).
+template <class F>
+auto with_part(const Geometry& geometry, const Contact& c, const F& f) {
+    return c.with == With::kPocket ? f(geometry.pockets[c.other]) : with_nose(geometry, c, f);
+}
+/// Calls f(contact without a ball, part) for all parts.
+template <class F>
+void each_part(const Geometry& geometry, const F& f) {
+    const auto each = [&f](With with, const auto& parts) {
+        for (int i = 0; i < static_cast<int>(parts.size()); ++i) f(Contact{-1, with, i}, parts[i]);
+    };
+    each(With::kCushion, geometry.cushions);
+    each(With::kNose, geometry.noses);
+    each(With::kPocket, geometry.pockets);
+}
+
+inline Partner partner_of(const Contact& c, const Geometry& geometry) {
+    if (c.with == With::kBall) return Partner::kBall;
+    if (c.with == With::kPocket) return Partner::kPocket;
+    return with_nose(geometry, c, [](const auto& nose) { return nose.partner; });
 }
 
 /// The fields b and detail of an event of this contact (Event). @param place  of the ball
@@ -59,6 +88,16 @@ inline Contact contact_of(const Event& event) {
             break;
     }
     return {event.a};
+}
+
+/// An order that reflections in the axes and quarter turns preserve, except for the order of mirror images
+/// among themselves.
+inline bool before_place(const Vec2& p, const Vec2& q) {
+    const auto key = [](const Vec2& a) {
+        const double x = std::abs(a.x()), y = std::abs(a.y());
+        return std::array<double, 4>{std::max(x, y), std::min(x, y), a.y(), a.x()};
+    };
+    return key(p) < key(q);
 }
 
 }  // namespace carom

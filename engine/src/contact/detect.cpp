@@ -330,20 +330,21 @@ double time_to_nose(const Path& ball, const Nose& nose, double R) {
     return kNever;
 }
 
-double time_past_end(const Geometry& geometry, const Contact& contact, const Path& ball) {
-    const auto leaves = [](double left, double rate, double pull, double rounding) {
-        if (past_end(left, rate, pull, rounding)) return 0.0;
-        return first_descent_quadratic(left, rate, pull, kNever);
-    };
-    if (contact.with == With::kCushion) {
-        const CushionLine& line = geometry.cushions[contact.other];
-        const double foot = dot(line.direction, ball.r - line.from), rate = dot(line.direction, ball.v),
-                     pull = dot(line.direction, ball.a), rounding = end_rounding(ball.r, line.length);
-        return std::min(leaves(foot, rate, pull, rounding),
-                        leaves(line.length - foot, -rate, -pull, rounding));
-    }
-    if (contact.with != With::kNose || geometry.noses[contact.other].span.whole) return kNever;
-    const Nose& nose = geometry.noses[contact.other];
+namespace {
+
+double leaves(double left, double rate, double pull, double rounding) {
+    if (past_end(left, rate, pull, rounding)) return 0.0;
+    return first_descent_quadratic(left, rate, pull, kNever);
+}
+
+double time_past(const CushionLine& line, const Path& ball) {
+    const double foot = dot(line.direction, ball.r - line.from), rate = dot(line.direction, ball.v),
+                 pull = dot(line.direction, ball.a), rounding = end_rounding(ball.r, line.length);
+    return std::min(leaves(foot, rate, pull, rounding), leaves(line.length - foot, -rate, -pull, rounding));
+}
+
+double time_past(const Nose& nose, const Path& ball) {
+    if (nose.span.whole) return kNever;
     const Vec2 out = ball.r - nose.center;
     const double rounding = end_rounding(out, 0.0);
     const auto passes = [&](const Vec2& end, double sign) {
@@ -353,10 +354,43 @@ double time_past_end(const Geometry& geometry, const Contact& contact, const Pat
     return nose.span.wide ? std::max(first, second) : std::min(first, second);
 }
 
+}  // namespace
+
+double time_past_end(const Geometry& geometry, const Contact& contact, const Path& ball) {
+    if (!contact.is_nose()) return kNever;
+    return with_nose(geometry, contact, [&ball](const auto& nose) { return time_past(nose, ball); });
+}
+
 double time_to_pocket(const Path& ball, const Vec2& center, double radius) {
     const double d = length(ball.r - center);
     if (d < radius) return 0.0;
     return time_to_circle(ball, center, radius);
+}
+
+double time_to_edge(const Vec2& r, const Vec2& v, const Vec2& center, double radius) {
+    const Vec2 out = r - center;
+    const double speed2 = dot(v, v), along = dot(out, v);
+    if (!(speed2 > 0.0)) return kNever;
+    // The later root of |out + v t| = radius. It is real inside the circle; on the circle, rounding may make
+    // it complex.
+    const double inside = (radius - length(out)) * (radius + length(out));
+    const double root = std::sqrt(std::max(0.0, along * along + speed2 * inside));
+    return std::max(0.0, along > 0.0 ? inside / (along + root) : (root - along) / speed2);
+}
+
+double time_to(const CushionLine& line, const Path& ball, double R, double window) {
+    return stays_off_line(ball, line, R, window) ? kNever : time_to_line(ball, line, R);
+}
+
+double time_to(const Nose& nose, const Path& ball, double R, double window) {
+    const bool apart =
+        !nose.is_arc() && stays_apart(ball.r - nose.center, ball.v, ball.a, turn_around(nose, R), window);
+    return apart ? kNever : time_to_nose(ball, nose, R);
+}
+
+double time_to(const Pocket& pocket, const Path& ball, double, double window) {
+    const bool apart = stays_apart(ball.r - pocket.center, ball.v, ball.a, pocket.radius, window);
+    return apart ? kNever : time_to_pocket(ball, pocket.center, pocket.radius);
 }
 
 }  // namespace carom

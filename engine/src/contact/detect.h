@@ -47,6 +47,8 @@ double time_past_end(const Geometry& geometry, const Contact& contact, const Pat
 
 /// Time until the centre enters the circle of a pocket; 0 if it is inside.
 double time_to_pocket(const Path& ball, const Vec2& center, double radius);
+/// [s] Time until a ball on a straight path leaves the circle from inside; kNever if it does not move.
+double time_to_edge(const Vec2& r, const Vec2& v, const Vec2& center, double radius);
 
 /// [-] Margins of the quick rejections: a share of the reach, and a share of the summed terms.
 inline constexpr double kApartShare = 1e-6;
@@ -118,5 +120,44 @@ inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reac
 
 /// The same for a straight line, on either side.
 bool stays_off_line(const Path& ball, const CushionLine& line, double R, double window);
+
+/// Time until a ball of radius R meets the part: a nose, or the circle of a pocket. kNever if a quick
+/// rejection finds that it stays away for the whole window.
+double time_to(const CushionLine& line, const Path& ball, double R, double window);
+double time_to(const Nose& nose, const Path& ball, double R, double window);
+double time_to(const Pocket& pocket, const Path& ball, double R, double window);
+
+// When a flying ball touches another ball, a straight nose or a round one, by one method without polynomials.
+// The distance from the ball's centre to any of these is a convex function of position, so its second time
+// derivative is at least -A, the negative length of the acceleration. A parabola of that curvature through
+// the present distance and rate is therefore a lower bound: its root never passes the first contact, and the
+// iteration converges quadratically. Uses only + - * / and square roots.
+
+/// Translation of one ball, absolute or relative to another, from now: r + v t + a t^2 / 2.
+struct Flight {
+    Vec3 r, v, a;
+    double horizon;  ///< [s], may be infinite
+    double noise;    ///< [m/s] closing speeds up to this are rounding
+};
+
+/// Time until the distance |r| between two closing centres decreases to `reach`; kNever if not within the
+/// horizon.
+double flight_to_ball(const Flight& relative, double reach);
+
+/// Time until a ball of radius R touches a straight nose while closing, with its foot between the ends.
+double flight_to_line(const Flight& ball, const CushionLine& line, double R);
+
+/// Time until a closing ball of radius R touches a round nose (radius 0: a point), from outside the circle
+/// only: a ball over its disc touches nothing.
+double flight_to_nose(const Flight& ball, const Nose& nose, double R);
+
+/// Time until a centre above the line crosses it between its ends; kNever if it does not.
+double flight_over_line(const Flight& ball, const CushionLine& line);
+
+/// Time until a centre on a straight path is over a disc about the origin; 0 if it is already.
+double flight_over_disc(const Vec2& r, const Vec2& v, double radius, double horizon);
+
+/// Time until a centre on a straight path leaves the rectangle; kNever if it rests.
+double flight_beyond(const Rectangle& bed, const Vec2& r, const Vec2& v);
 
 }  // namespace carom

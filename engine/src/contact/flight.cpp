@@ -1,4 +1,9 @@
-#include "contact/flight.h"
+// When a flying ball touches another ball, a straight nose or a round one, by one method without polynomials.
+// The distance from the ball's centre to any of these is a convex function of position, so its second time
+// derivative is at least -A, the negative length of the acceleration. A parabola of that curvature through
+// the present distance and rate is therefore a lower bound: its root never passes the first contact, and the
+// iteration converges quadratically. Uses only + - * / and square roots.
+#include "contact/detect.h"
 
 #include <algorithm>
 #include <cmath>

@@ -57,7 +57,8 @@ Link link_of(const Group& g, const RestingContact& c) {
         link.tilt = discs ? 0.0 : (other.R - ball.R) / link.distance;
         link.gap = touch_level(ball, other, discs).gap;
     } else {
-        link.distance = part_turn(g.around.geometry, c.contact, ball.R);
+        link.distance = with_nose(g.around.geometry, c.contact,
+                                  [&ball](const auto& nose) { return turn_around(nose, ball.R); });
         link.gap = touch_part(g.around.geometry, c.contact, ball).gap;
     }
     link.begins = c.began == g.now;

@@ -92,7 +92,7 @@ inline constexpr double kShorter = 0.7;
 // Without it: Effects.SkippedAndZeroGiveTheSameRecordOver1000Scenes.
 inline constexpr double kChangeUlp = 8.0;
 
-// The solution over an interval (contact/resting_newton.cpp, resting_response.cpp, resting_step.cpp)
+// The solution over an interval (contact/resting_newton.cpp, resting_response.cpp)
 
 // [-] Most Newton steps of one solution. A few are usual; a step is exact once every ball's mode of motion is
 // right.

@@ -1,7 +1,7 @@
 // One solution of one group of resting contacts (resting.h): the effect of impulses (resting_response.cpp);
-// the impulses that leave no contact closing at the end of an interval (resting_newton.cpp); the step over an
-// interval, and the criteria for a solution (resting_step.cpp); the length of the interval
-// (resting_interval.cpp); and their order (resting.cpp).
+// the impulses that leave no contact closing at the end of an interval, the step over it, and the criteria
+// for a solution (resting_newton.cpp); the length of the interval (resting_interval.cpp); and their order
+// (resting.cpp).
 //
 // Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping
 // for unilateral contacts with friction). For each ball, per mass, let v be its velocity, s = R (w_y, -w_x)
@@ -139,20 +139,13 @@ Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
 void respond(Group& g, double h);
 
 // resting_newton.cpp
-/// Solves for the impulses of the contacts that are not open, by Newton's method from the present ones.
-/// @return whether there is a solution
-bool solve_newton(Group& g, double h, bool stabilise);
 /// [m/s] Slip of two balls that their friction can end within the interval.
 double slip_ended(const Group& g, const Link& link);
-
-// resting_step.cpp
 /// Solves the step over h [s]; 0 is an instant, without friction. @return whether there is a solution; if
 /// not, leaves the nearest state
 bool step(Group& g, double h);
 /// Solves for the impulses that leave no contact closing. @return whether there is a solution
 bool strike(Group& g);
-/// [m/s] Rounding of the gap rates.
-double rate_rounding(const Group& g);
 /// [m/s] Friction between balls, given the slip at the start.
 double friction_at_start(const Group& g, const Link& link);
 

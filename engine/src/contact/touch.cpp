@@ -1,6 +1,7 @@
 #include "contact/touch.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace carom {
 
@@ -39,34 +40,49 @@ bool beside(const Nose& nose, const BallAt& ball, double slack) {
     return !behind(nose, place) && nose.span.holds(place - nose.center, slack);
 }
 
-bool beside(const Geometry& geometry, const Contact& contact, const BallAt& ball) {
-    return contact.with == With::kNose ? beside(geometry.noses[contact.other], ball)
-                                       : beside(geometry.cushions[contact.other], ball);
-}
-
-bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt& ball) {
-    if (touch_part(geometry, contact, ball).gap > kTouchTolerance) return false;
+bool touches_part(const CushionLine& line, const BallAt& ball) {
     const Vec2 here = planar(ball.r);
-    if (contact.with == With::kNose)
-        return beside(geometry.noses[contact.other], ball, end_rounding(here, 0.0));
-    const CushionLine& line = geometry.cushions[contact.other];
-    return between_ends(dot(line.direction, here - line.from), dot(line.direction, planar(ball.v)), 0.0,
+    return touch_part(line, ball).gap <= kTouchTolerance &&
+           between_ends(dot(line.direction, here - line.from), dot(line.direction, planar(ball.v)), 0.0,
                         line.length, end_rounding(here, line.length));
 }
 
-double part_height(const Geometry& geometry, const Contact& contact) {
-    return contact.with == With::kNose ? geometry.noses[contact.other].height
-                                       : geometry.cushions[contact.other].height;
+bool touches_part(const Nose& nose, const BallAt& ball) {
+    return touch_part(nose, ball).gap <= kTouchTolerance &&
+           beside(nose, ball, end_rounding(planar(ball.r), 0.0));
 }
 
-double part_turn(const Geometry& geometry, const Contact& contact, double R) {
-    return contact.with == With::kNose ? turn_around(geometry.noses[contact.other], R) : 0.0;
+int pocket_under(const Geometry& geometry, const Vec2& here) {
+    int under = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < geometry.pockets.size(); ++i) {
+        const Pocket& pocket = geometry.pockets[i];
+        const double beyond = length(here - pocket.center) - pocket.radius;
+        if (!(beyond < least)) continue;
+        least = beyond;
+        under = static_cast<int>(i);
+    }
+    return under;
 }
 
-Vec2 part_place(const Geometry& geometry, const Contact& contact, const Vec2& r) {
-    if (contact.with == With::kPocket) return geometry.pockets[contact.other].center;
-    if (contact.with == With::kNose) return geometry.noses[contact.other].center;
-    return nearest_point(geometry.cushions[contact.other], r);
+int pocket_around(const Geometry& geometry, const Vec2& here) {
+    const int under = pocket_under(geometry, here);
+    return under >= 0 && is_inside(geometry.pockets[under], here) ? under : -1;
+}
+
+bool is_bed(const Table& table, const Pocket& pocket, const Vec2& here, double R) {
+    if (table.bed) return is_inside(*table.bed, here);
+    if (!(table.width > 0.0 && table.length > 0.0)) return true;  // it has no end
+    const Vec2 c = pocket.center, low = table.corner, high = low + Vec2(table.width, table.length);
+    if (is_inside(Rectangle(low.x(), low.y(), high.x(), high.y()), c)) return true;
+    const Rectangle between_jaws(low.x() - R, low.y() - R, high.x() + R, high.y() + R);
+    return is_inside(between_jaws, here) && dot(here - c, Vec2(0.5 * (low + high) - c)) > 0.0;
+}
+
+std::optional<double> climbs(double v_n, double sunk, double R, double gravity) {
+    if (!(sunk < 1.0) || !(v_n > 0.0)) return std::nullopt;
+    const double kept = (1.0 - sunk) * v_n, left = kept * kept - 2.0 * gravity * R * sunk;
+    return left > 0.0 ? std::optional(std::sqrt(left)) : std::nullopt;
 }
 
 }  // namespace carom

@@ -1,17 +1,17 @@
 // The geometry of a contact: its direction, its gap, and how fast the gap closes. One function per kind of
 // part: another ball, a straight nose, a round nose (a point if its radius is 0, a wall around the balls if
-// it is negative), the cloth. A new kind of part needs a function here, its time in detect.h, and its keys in
-// the reader.
+// it is negative), the edge of a pocket, the cloth. docs/design/extending.md lists the files of a new kind.
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
 #include "carom/engine/vec.h"
 #include "contact/contact.h"
-#include "physics/nose_reach.h"
+#include "physics/reach.h"
 
 namespace carom {
 
@@ -32,12 +32,24 @@ struct Touch {
     double pressing(const Vec2& a) const { return dot(planar(n), a) - bend; }
 };
 
+/// A contact in the present state of its balls.
+struct Meeting {
+    Contact contact;
+    BallAt ball, other;  ///< other: of two balls
+    Touch touch;
+    double pressing;  ///< [m/s^2] closing acceleration
+};
+
 /// [m] Distance of a touching ball's centre from a nose: horizontally, or in space if it flies.
 template <class Part>
 double reach_of(const Part& part, double R, bool flies) {
     return flies ? nose_reach(R, part.height, part.inset) : R - part.inset;
 }
-/// [m] Path radius of a touching ball around a round nose on the cloth; negative inside a wall.
+/// [m] Path radius of a touching ball around a nose on the cloth: 0 for a straight one, negative inside a
+/// wall.
+inline double turn_around(const CushionLine&, double) {
+    return 0.0;
+}
 inline double turn_around(const Nose& nose, double R) {
     return R + nose.radius - nose.inset;
 }
@@ -82,7 +94,7 @@ inline Touch touch_level(const BallAt& ball, const BallAt& other, bool discs) {
 }
 
 /// A ball and a straight nose, on either side of it.
-inline Touch touch_line(const CushionLine& line, const BallAt& ball) {
+inline Touch touch_part(const CushionLine& line, const BallAt& ball) {
     const Vec2 from = planar(ball.r) - line.from;
     const double &x = line.direction[0], &y = line.direction[1];
     if (ball.flies) {
@@ -97,13 +109,21 @@ inline Touch touch_line(const CushionLine& line, const BallAt& ball) {
 }
 
 /// A ball and a round nose; inside a wall the normal points outwards.
-inline Touch touch_round(const Nose& nose, const BallAt& ball) {
+inline Touch touch_part(const Nose& nose, const BallAt& ball) {
     const Vec2 out = planar(ball.r) - nose.center;
     if (ball.flies) return detail::touch_rim(out, nose.radius, true, nose, ball);
     const double level = (nose.radius < 0.0 ? -1.0 : 1.0) * length(out), turn = turn_around(nose, ball.R);
     const Vec3 n{-(out[0] / level), -(out[1] / level), 0.0};
     const double around = cross(planar(n), planar(ball.v));
     return {n, level - turn, dot3(n, ball.v), around * around / turn};
+}
+
+/// A ball in the circle of a pocket, and its edge: the plane of the cloth, from inside.
+inline Touch touch_part(const Pocket& pocket, const BallAt& ball) {
+    const Vec2 out = planar(ball.r) - pocket.center;
+    const double distance = length(out), around = cross(out, planar(ball.v)) / distance;
+    const Vec3 n{out[0] / distance, out[1] / distance, 0.0};
+    return {n, pocket.radius - distance, dot3(n, ball.v), -(around * around / distance)};
 }
 
 /// A ball above the cloth.
@@ -141,27 +161,42 @@ inline bool behind(const Nose& nose, const Vec2& place) {
     return nose.sign() * length(place - nose.center) < nose.radius;
 }
 
-/// Whether the ball can touch the part where it is: between the ends of a cushion or an arc, on the side on
+/// Whether the ball can touch the nose where it is: between the ends of a cushion or an arc, on the side on
 /// which an arc acts, and not over the disc of a jaw.
 /// @param slack [m] rounding of the direction from an arc's centre
 bool beside(const CushionLine& line, const BallAt& ball);
 bool beside(const Nose& nose, const BallAt& ball, double slack = 0.0);
+/// Whether it touches the nose now, within kTouchTolerance and the rounding of the nose's ends.
+bool touches_part(const CushionLine& line, const BallAt& ball);
+bool touches_part(const Nose& nose, const BallAt& ball);
 
-// By the part of a contact.
-
-/// A ball and its part of the table: a cushion or a nose.
+/// The same by the part of a contact.
 inline Touch touch_part(const Geometry& geometry, const Contact& contact, const BallAt& ball) {
-    return contact.with == With::kNose ? touch_round(geometry.noses[contact.other], ball)
-                                       : touch_line(geometry.cushions[contact.other], ball);
+    return with_part(geometry, contact, [&](const auto& part) { return touch_part(part, ball); });
 }
-bool beside(const Geometry& geometry, const Contact& contact, const BallAt& ball);
-/// Whether the ball touches the part now, within kTouchTolerance and the rounding of the part's ends.
-bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt& ball);
-/// [m] Height of the nose.
-double part_height(const Geometry& geometry, const Contact& contact);
-/// [m] Path radius of a touching ball around the part: 0 for a straight one, negative inside a wall.
-double part_turn(const Geometry& geometry, const Contact& contact, double R);
-/// The point of a cushion nearest to a ball, or the centre of a nose or a pocket.
-Vec2 part_place(const Geometry& geometry, const Contact& contact, const Vec2& r);
+inline bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt& ball) {
+    return with_nose(geometry, contact, [&](const auto& nose) { return touches_part(nose, ball); });
+}
+
+// Pockets. Source: docs/reference/physics.md, "Pockets".
+
+inline bool is_inside(const Pocket& pocket, const Vec2& here) {
+    return length(here - pocket.center) < pocket.radius;
+}
+/// The pocket whose circle contains this position most deeply, or is nearest to it; -1 without pockets.
+int pocket_under(const Geometry& geometry, const Vec2& here);
+/// The same, if its circle contains this position; otherwise -1.
+int pocket_around(const Geometry& geometry, const Vec2& here);
+
+/// Whether cloth lies beyond the edge of the pocket at this position, rather than the pocket's back or the
+/// area behind the rails. The cloth lies on the table's side of the pocket, and between two jaws a ball of
+/// radius R gets at most R beyond the line of the rails.
+bool is_bed(const Table& table, const Pocket& pocket, const Vec2& here, double R);
+
+/// [m/s] Speed away from the edge of a ball that reaches it at the speed v_n with its centre `sunk` ball
+/// radii below the height of a ball on the cloth; nothing if it does not come up. It hits the edge at an
+/// angle whose cosine is 1 - sunk, keeps its tangential speed (no restitution, no friction), and rises by
+/// sunk R: v^2 = ((1 - sunk) v_n)^2 - 2 g R sunk.
+std::optional<double> climbs(double v_n, double sunk, double R, double gravity);
 
 }  // namespace carom

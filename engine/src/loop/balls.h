@@ -9,10 +9,23 @@
 #include "carom/engine/record.h"
 #include "contact/roots.h"
 #include "contact/touch.h"
-#include "loop/memory.h"
 #include "physics/motion.h"
 
 namespace carom {
+
+/// Takes memory over for its own lifetime, then returns it for the next run. A derived class has the members
+/// of `Memory` as its own.
+template <class Memory>
+class Borrowed : protected Memory {
+  public:
+    explicit Borrowed(Memory& owner) : Memory(std::move(owner)), owner_(owner) {}
+    ~Borrowed() { owner_ = std::move(static_cast<Memory&>(*this)); }
+    Borrowed(const Borrowed&) = delete;
+    Borrowed& operator=(const Borrowed&) = delete;
+
+  private:
+    Memory& owner_;
+};
 
 struct BallsMemory {
     std::vector<Segment> segments_;
@@ -84,8 +97,38 @@ class Balls : private Borrowed<BallsMemory> {
         return placed_at(segments_[ball], now_ - segments_[ball].start, plan_.gravity);
     }
 
-    /// The ball in the plane of the cloth, for contacts there.
-    BallAt at(int ball) const { return {position(ball), velocity(ball), radius(ball)}; }
+    /// In space if the ball flies, otherwise in the plane of the cloth.
+    BallAt at(int ball) const {
+        if (!flies(segments_[ball].state)) return {position(ball), velocity(ball), radius(ball)};
+        const Placed there = placed(ball);
+        return {there.position, there.velocity, radius(ball), true};
+    }
+    /// A contact with a part of the table, or of two balls in the plane of the cloth.
+    Meeting meet(const Contact& contact) const {
+        Meeting met{contact, at(contact.ball), {}, {}, 0.0};
+        Vec2 a = segments_[contact.ball].a;
+        if (contact.with == With::kBall) {
+            met.other = at(contact.other);
+            met.touch = touch_level(met.ball, met.other, plan_.balls.discs());
+            a -= segments_[contact.other].a;
+        } else {
+            met.touch = touch_part(plan_.geometry, contact, met.ball);
+        }
+        met.pressing = met.touch.pressing(a);
+        return met;
+    }
+    /// The motion of a ball after an impact, from `later` seconds after now(). A falling ball continues to
+    /// fall.
+    Segment after_impact(int ball, const Vec3& r, const Velocities& after, double later = 0.0) const {
+        const Segment& before = segments_[ball];
+        const double time = now_ + later;
+        if (before.state == MotionState::kFalling) {
+            const double falls = fall_speed(before, time - before.start, motion(ball).gravity);
+            return falling_segment(time, r, after.v, after.w, falls, motion(ball));
+        }
+        const auto begin = plan_.in_force(Effect::kAirborne) ? free_segment : start_segment;
+        return begin(time, r, after.v, after.w, motion(ball));
+    }
     double radius(int ball) const { return plan_.sizes[ball].R; }
     const MotionParams& motion(int ball) const { return plan_.motion[ball]; }
 

@@ -27,6 +27,10 @@ struct Box {
     double low_x, low_y, high_x, high_y;
 };
 
+inline Box box_around(const Vec2& center, double reach) {
+    return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
+}
+
 /// A box, rounded for comparisons.
 struct RoundedBox {
     float low_x, low_y, high_x, high_y;

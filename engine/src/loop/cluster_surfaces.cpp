@@ -1,10 +1,12 @@
-#include "loop/cluster_surfaces.h"
+// Cushions and jaws near a cluster, which act by the scene's own law, and the cloth under its balls in space.
+#include "loop/clusters.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "carom/engine/airborne.h"
 #include "contact/roots.h"
@@ -59,7 +61,8 @@ void NearSurfaces::each_beside(std::size_t member, const Placed& at, F&& f) cons
         BallAt there = ball;
         const double time = touch.gap > 0.0 && touch.closing > 0.0 ? touch.gap / touch.closing : 0.0;
         there.r += time * there.v;
-        if (beside(plan_.geometry, part.contact, there)) f(part.contact, touch, time);
+        const auto is_beside = [&there](const auto& nose) { return beside(nose, there); };
+        if (with_nose(plan_.geometry, part.contact, is_beside)) f(part.contact, touch, time);
     }
 }
 
@@ -69,17 +72,17 @@ NearSurfaces::Reached NearSurfaces::find(std::size_t member, const Placed& at, c
     each_beside(member, at, [&](const Contact& part, const Touch& touch, double time) {
         if (!(touch.closing > noise)) return;
         if (touch.gap <= kTouches * R(member)) time = 0.0;
-        if (time < first.time || (time == first.time && touch.closing > first.closing))
-            first = {&part, time, touch.closing};
+        if (time < first.time || (time == first.time && touch.closing > first.touch.closing))
+            first = {&part, time, touch};
     });
     if (!in_space_ || first.time == 0.0) return first;
     const double height = at.position.z() - R(member), v = at.velocity.z(), g = motion(member).gravity;
     if (lies(m_.ball_[member], at)) {
         // The cloth stops it, in either direction.
-        if (std::abs(v) > noise) return {nullptr, 0.0, std::abs(v)};
+        if (std::abs(v) > noise) return {nullptr, 0.0};
         return first;
     }
-    if (height <= kTouches * R(member) && v < 0.0) return {nullptr, 0.0, -v};
+    if (height <= kTouches * R(member) && v < 0.0) return {nullptr, 0.0};
     const double root = std::sqrt(std::max(0.0, v * v + 2.0 * g * height));
     const double lands = v < 0.0 ? 2.0 * height / (root - v) : (v + root) / g;
     return lands < first.time ? Reached{nullptr, lands} : first;
@@ -105,15 +108,16 @@ void NearSurfaces::hit(std::size_t member, double time, const Vec3& r, Velocitie
         return;
     }
     const Contact& part = *met.part;
-    const bool jaw = is_jaw(part, plan_.geometry), flies = !lies(index, at);
-    const Vec3 n = -touch_part(plan_.geometry, part, BallAt{r, ball.v, R(member), flies}).n;
-    const CushionModelInfo* const model = jaw ? plan_.jaw : plan_.cushion;
+    const Partner partner = partner_of(part, plan_.geometry);
+    const CushionModelInfo& model = plan_.model_of(partner);
+    const Vec3 n = -met.touch.n;
     const Vec3 before = ball.v;
     bool solved = true;
-    if (flies) {
-        hit_nose(plan_.balls, R(member), *model, n, parting_speed(R(member), plan_.gravity), ball);
+    if (!lies(index, at)) {
+        hit_nose(plan_.balls, R(member), model, n, parting_speed(R(member), plan_.gravity), ball);
     } else {
-        const std::array touches{NoseTouch{planar(n), part_height(plan_.geometry, part), model}};
+        const double height = with_nose(plan_.geometry, part, [](const auto& nose) { return nose.height; });
+        const std::array touches{NoseTouch{planar(n), height, &model}};
         solved = bounce(plan_.balls, plan_.sizes[static_cast<std::size_t>(index)], touches,
                         in_space_ ? std::optional(motion(member).gravity) : std::nullopt,
                         plan_.impact.tolerance, ball);
@@ -121,8 +125,7 @@ void NearSurfaces::hit(std::size_t member, double time, const Vec3& r, Velocitie
     // A ball that would still close stays at the part, without a rebound.
     const double left = ball.v.dot(n);
     if (!solved || !(left > -kCreeps)) ball.v -= left * n;
-    m_.hits_.push_back({time, index, jaw ? Partner::kJaw : Partner::kCushion,
-                        event_partner(part, plan_.geometry, planar(r)),
+    m_.hits_.push_back({time, index, partner, event_partner(part, plan_.geometry, planar(r)),
                         mass * std::max(0.0, (ball.v - before).dot(n))});
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "carom/engine/airborne.h"
-#include "contact/place.h"
+#include "contact/contact.h"
 #include "contact/touch.h"
 
 namespace carom {
@@ -98,10 +98,8 @@ double Clusters::collect(int a, int b, double v_n, bool pair) {
 // Overlaps the box of every ball within `gap` of this one: a ball's box contains its present position, and
 // the margin covers rounding.
 Box Clusters::near_box(const ClusterBall& ball, double gap) const {
-    const double x = ball.r.x(), y = ball.r.y();
-    const double half =
-        (balls_.radius(ball.ball) + gap) * (1.0 + kBoxShare) + kBoxShare * (std::abs(x) + std::abs(y));
-    return {x - half, y - half, x + half, y + half};
+    return box_around(planar(ball.r), (balls_.radius(ball.ball) + gap) * (1.0 + kBoxShare) +
+                                          kBoxShare * (std::abs(ball.r.x()) + std::abs(ball.r.y())));
 }
 
 void Clusters::collect_at(int a, int b, double v_n) {
@@ -336,7 +334,7 @@ std::int64_t Clusters::integrate(const ClusterSettings& settings, double v_n) {
     for (const ClusterBall& m : members_) fastest = std::max(fastest, length3(m.v));
     for (std::size_t k = 0; k < members_.size(); ++k)
         detector_.parts_near(near_box(members_[k], fastest * longest), [&](const Contact& part) {
-            if (part.with != With::kPocket) near_.add(k, part);
+            if (part.is_nose()) near_.add(k, part);
         });
     near_.sort();
     ClusterSettings with = settings;

@@ -52,21 +52,17 @@ double Detector::closing(const PredictedEvent& c) const {
 Vec2 Detector::place(const PredictedEvent& c) const {
     const Segment& s = balls_.segment(c.contact.ball);
     Vec2 here = planar(position_at(s, c.time - s.start));
-    const int other = c.contact.other;
-    switch (c.contact.with) {
-        case With::kBall: {
-            const Segment& q = balls_.segment(other);
-            return 0.5 * (here + planar(position_at(q, c.time - q.start)));
-        }
-        case With::kPocket:
-        case With::kNose:
-        case With::kCushion:
-            return part_place(plan_.geometry, c.contact, here);
-        case With::kNothing:
-        case With::kOut:
-            break;
+    if (c.contact.with == With::kBall) {
+        const Segment& q = balls_.segment(c.contact.other);
+        return 0.5 * (here + planar(position_at(q, c.time - q.start)));
     }
-    return here;
+    if (!c.contact.is_part()) return here;
+    return with_part(plan_.geometry, c.contact, [&here](const auto& part) {
+        if constexpr (requires { part.center; })
+            return part.center;
+        else
+            return nearest_point(part, here);
+    });
 }
 
 // Order of simultaneous predicted events: kind, then larger closing(), then position (x, then y); never an

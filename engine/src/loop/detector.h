@@ -2,7 +2,7 @@
 // its first contact with the table and its first contact with another ball. Boxes exclude everything that a
 // ball cannot reach before its own next event (broad phase), closed forms give the times of the remaining
 // contacts (contact/detect.h), and a queue orders the earliest times of all balls. Implemented in
-// detector.cpp (the order), pair_search.cpp, table_search.cpp and flight_search.cpp.
+// detector.cpp (the order), pair_search.cpp and table_search.cpp.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,10 @@
 
 #include "contact/contact.h"
 #include "contact/detect.h"
-#include "contact/flight.h"
 #include "loop/balls.h"
 #include "loop/box_search.h"
 #include "loop/event_queue.h"
-#include "loop/memory.h"
 #include "loop/resting_contacts.h"
-#include "loop/stopwatch.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -117,14 +114,12 @@ class Detector : private Borrowed<DetectorMemory> {
     void set_up_table();
     void find_parts(const RoundedBox& box);
     void search_table(int ball, const RoundedBox& whole);
-    double time_to(const Contact& contact, const Path& path, double window) const;
 
-    // flight_search.cpp
+    // table_search.cpp, in the air
     Flight flight(int ball, double from) const;
     double time_to_flight(int a, int b, double from) const;
     void search_table_in_air(int ball);
     double time_over_pocket(int pocket, const Path& path, double R) const;
-    bool over_pocket(const Vec2& here) const;
 
     /// The duration from one time to another, rounded up.
     static double span(double from, double to) { return (to - from) + 0x1p-50 * to; }

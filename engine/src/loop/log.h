@@ -1,6 +1,7 @@
 // The record so far, and the reports of progress and errors.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,14 +13,36 @@
 #include "carom/engine/tolerances.h"
 #include "contact/contact.h"
 #include "loop/balls.h"
-#include "loop/memory.h"
-#include "loop/stopwatch.h"
 #include "physics/cluster.h"
 
 namespace carom {
 
 /// The result of a run: a record with every segment, an outcome, or an outcome with the hash of the record.
 enum class Keep : std::uint8_t { kRecord, kOutcome, kHash };
+
+/// Costs since the last event; iterations without an event count towards the next one.
+struct Costs {
+    EventCost event;         ///< queue_ns is computed at the end
+    double search_ns = 0.0;  ///< part of event.detect_ns: the search for contacts
+};
+
+/// Adds its lifetime [ns] to `sum`. If `sum` is nullptr (no profile), it does not read the clock.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double* sum) : sum_(sum) {
+        if (sum_ != nullptr) start_ = Clock::now();
+    }
+    ~Stopwatch() {
+        if (sum_ != nullptr) *sum_ += std::chrono::duration<double, std::nano>(Clock::now() - start_).count();
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double* sum_;
+    Clock::time_point start_;
+};
 
 struct LogMemory {
     struct BallSegment {
@@ -74,10 +97,10 @@ class Log : private Borrowed<LogMemory> {
     /// The last event was a slow contact.
     void mark_slow() { events_.back().slow = true; }
     /// An event of a ball and a part of the table, or of two balls.
-    void event(EventType type, const Contact& contact) {
-        const Vec2 place =
-            contact.with == With::kNose ? planar(balls_.position(contact.ball)) : Vec2(0.0, 0.0);
-        event(type, contact.ball, event_partner(contact, geometry_, place), event_detail(contact));
+    void event(EventPhase phase, const Contact& contact) {
+        event(event_type(phase, partner_of(contact, geometry_)), contact.ball,
+              event_partner(contact, geometry_, planar(balls_.position(contact.ball))),
+              event_detail(contact));
     }
     /// A simultaneous impact of several balls, started by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls, const std::vector<Hit>& hits);

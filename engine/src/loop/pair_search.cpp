@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "loop/detector.h"
-#include "physics/nose_reach.h"
+#include "physics/reach.h"
 
 namespace carom {
 

@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "carom/engine/cushion.h"
-#include "contact/pocket_edge.h"
 #include "contact/resting_constants.h"
 #include "contact/touch.h"
-#include "loop/bounce.h"
+#include "physics/cushion/bounce.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -21,6 +21,9 @@ namespace {
 
 // [-] An impact with at least this many steps is slow (about 20 us): report progress after it.
 constexpr int kLongImpact = 1000;
+// [-] Two noses count as one if the cosine of the angle between their normals is larger: a cushion and the
+// jaw that continues it.
+constexpr double kOneNormal = 1.0 - 1e-6;
 
 }  // namespace
 
@@ -42,11 +45,11 @@ void Resolver::resolve(const Contact& contact) {
     if (leave_cluster(contact)) return;
     switch (contact.with) {
         case With::kBall:
-            ball_ball(contact.ball, contact.other);
+            ball_ball(contact);
             break;
         case With::kCushion:
         case With::kNose:
-            cushion(contact);
+            cushion(balls_.meet(contact));
             break;
         case With::kPocket:
             pocket(contact);
@@ -60,32 +63,16 @@ void Resolver::resolve(const Contact& contact) {
     }
 }
 
-// The motion of a ball after an impact. A falling ball continues to fall.
-Segment Resolver::after_impact(double time, int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
-    const Segment& before = balls_.segment(ball);
-    const MotionParams& motion = balls_.motion(ball);
-    if (before.state != MotionState::kFalling) {
-        if (flights_) return free_segment(time, r, v, w, motion);
-        return start_segment(time, r, v, w, motion);
-    }
-    const double falls = fall_speed(before, time - before.start, motion.gravity);
-    return falling_segment(time, r, v, w, falls, motion);
-}
-
-void Resolver::begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w) {
-    log_.begin(ball, after_impact(ball, r, v, w));
-}
-
 // A ball that rolls so slowly that it stops before it has moved, by rounding, meets no other ball: as part of
 // a cluster it would keep that speed, and meet the same ball again and again.
 // @return whether one of them was such a ball; it rests now
-bool Resolver::stop_at_once(int one, int two, double v_n) {
+bool Resolver::stop_at_once(const Meeting& met) {
     bool stopped = false;
-    for (const int ball : {one, two}) {
+    for (const int ball : {met.contact.ball, met.contact.other}) {
         const Segment& s = balls_.segment(ball);
         const double left = s.start + s.duration - balls_.now();
         if (s.state != MotionState::kRolling || s.held || !(left <= resting::kStopNoise) ||
-            !(v_n <= resting::kStopNoise * balls_.motion(ball).roll))
+            !(met.touch.closing <= resting::kStopNoise * balls_.motion(ball).roll))
             continue;
         Segment after = after_transition(s, balls_.motion(ball));
         after.start = balls_.now();
@@ -96,27 +83,25 @@ bool Resolver::stop_at_once(int one, int two, double v_n) {
     return stopped;
 }
 
-void Resolver::ball_ball(int a, int b) {
+void Resolver::ball_ball(const Contact& contact) {
+    const int a = contact.ball, b = contact.other;
     if (flights_ && is_free(a, b)) {
         free_balls(a, b);
         return;
     }
-    const Vec3 ra = balls_.position(a), rb = balls_.position(b);
-    const bool swap = comes_first(rb, ra);
+    const bool swap = comes_first(balls_.position(b), balls_.position(a));
     const int one = swap ? b : a, two = swap ? a : b;
-    const Vec3 &r1 = swap ? rb : ra, &r2 = swap ? ra : rb;
-
-    const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
-    if (resting_.try_hold(approach, plan_.balls.e_b)) return;
-    if (stop_at_once(one, two, approach.v_n)) return;
-    if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, approach.v_n)) return;
+    const Meeting met = balls_.meet({one, With::kBall, two});
+    const Vec3 &r1 = met.ball.r, &r2 = met.other.r;
+    if (resting_.try_hold(met, plan_.balls.e_b)) return;
+    if (stop_at_once(met)) return;
+    if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, met.touch.closing)) return;
 
     // In the plane, ignoring the height at which one of them began to fall.
     const bool sinks = balls_.sinks(one) || balls_.sinks(two);
     const double up = plan_.sizes[two].R - plan_.sizes[one].R;
     const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() + up : r2.z());
-    const Velocities before1{balls_.velocity(one), balls_.spin(one)},
-        before2{balls_.velocity(two), balls_.spin(two)};
+    const Velocities before1{met.ball.v, balls_.spin(one)}, before2{met.other.v, balls_.spin(two)};
     Velocities ball1 = before1, ball2 = before2;
     PairImpact impact{};
     const auto hit = [&](bool contact_time) {
@@ -128,7 +113,7 @@ void Resolver::ball_ball(int a, int b) {
     };
     hit(plan_.contact_time);
     if (impact.grazes) {
-        if (cluster(a, b, approach.v_n, true)) return;
+        if (cluster(a, b, met.touch.closing, true)) return;
         hit(false);
     }
     if (cost_ != nullptr) {
@@ -141,8 +126,8 @@ void Resolver::ball_ball(int a, int b) {
     else if (impact.status != kernel::ImpactStatus::kNotApproaching)
         log_.fail(fmt::format("the impact of {} and {} could not be computed: {}", log_.id(one), log_.id(two),
                               kernel::describe(impact.status)));
-    resting_.strike(one, after_impact(one, r1, ball1.v, ball1.w));
-    resting_.strike(two, after_impact(two, r2, ball2.v, ball2.w));
+    resting_.strike(one, balls_.after_impact(one, r1, ball1));
+    resting_.strike(two, balls_.after_impact(two, r2, ball2));
     resting_.go_on();
 }
 
@@ -162,9 +147,9 @@ bool Resolver::hold_in_cluster(Pressed when) {
     for (const ClusterContact& c : clusters_.contacts()) {
         const ClusterBall &p = clusters_.balls()[c.i], &q = clusters_.balls()[c.j];
         if (c.gap > 0.0 || resting_.has({p.ball, With::kBall, q.ball})) continue;
-        ContactKinematics approach = kinematics_of(plan_, balls_, p.ball, q.ball);
-        if (when == Pressed::kAfter) approach.a_c = pressing(p, q);
-        if (approach.v_n > 0.0 && resting_.try_hold(approach, plan_.balls.e_b)) return true;
+        Meeting met = balls_.meet({p.ball, With::kBall, q.ball});
+        if (when == Pressed::kAfter) met.pressing = pressing(p, q);
+        if (met.touch.closing > 0.0 && resting_.try_hold(met, plan_.balls.e_b)) return true;
     }
     return false;
 }
@@ -210,7 +195,7 @@ bool Resolver::cluster(int a, int b, double v_n, bool pair) {
         if (in_space)
             go_on(ball.ball, ball.r, {ball.v, ball.w});
         else
-            resting_.strike(ball.ball, after_impact(ball.ball, ball.r, ball.v, ball.w));
+            resting_.strike(ball.ball, balls_.after_impact(ball.ball, ball.r, {ball.v, ball.w}));
     }
     if (!in_space) resting_.go_on();
     return true;
@@ -228,7 +213,7 @@ void Resolver::begin_cluster(int a, int b) {
         const Vec3& path = clusters_.path(k);
         const Vec3 end = m.r + path;
         log_.begin_colliding(m.ball, colliding_segment(now, m.r, path, m.w, duration),
-                             after_impact(now + duration, m.ball, end, m.v, m.w), other);
+                             balls_.after_impact(m.ball, end, {m.v, m.w}, duration), other);
         other = m.ball;
         log_.watch(m.ball);
     }
@@ -239,10 +224,8 @@ void Resolver::end_cluster(int ball) {
         const int next = balls_.next_in_cluster(ball);
         log_.begin(ball, balls_.afterwards(ball));
         // The cluster may have moved it over a pocket.
-        const std::vector<Pocket>& pockets = plan_.geometry.pockets;
-        for (std::size_t k = 0; k < pockets.size() && !is_off_cloth(balls_.segment(ball).state); ++k)
-            if (is_inside(pockets[k], planar(balls_.position(ball))))
-                pocket({ball, With::kPocket, static_cast<int>(k)});
+        const int over = pocket_around(plan_.geometry, planar(balls_.position(ball)));
+        if (over >= 0 && !is_off_cloth(balls_.segment(ball).state)) pocket({ball, With::kPocket, over});
         ball = next;
     }
 }
@@ -255,52 +238,82 @@ bool Resolver::leave_cluster(const Contact& contact) {
     for (const int ball : {contact.ball, contact.partner()}) {
         if (ball < 0 || !balls_.collides(ball)) continue;
         const Segment& after = balls_.afterwards(ball);
-        begin(ball, balls_.position(ball), after.v, after.w);
+        log_.begin(ball, balls_.after_impact(ball, balls_.position(ball), {after.v, after.w}));
         left = true;
     }
     return left;
 }
 
-void Resolver::cushion(const Contact& contact) {
-    const int ball = contact.ball;
-    if (flies(balls_.segment(ball).state)) {
-        cushion_in_air(contact);
+// This contact and all simultaneous ones of its ball with noses: those within kTouchTolerance that close by
+// more than rounding and are not resting contacts. Noses that join smoothly count as one.
+Resolver::Noses Resolver::noses_with(const Meeting& met) const {
+    Noses all;
+    all.add(met);
+    const BallAt& at = met.ball;
+    const double noise = closing_noise(at.R, {at.v, balls_.spin(met.contact.ball)});
+    const Box near = box_around(planar(at.r), at.R * (1.0 + kBoxShare) + kTouchTolerance);
+    detector_.parts_near(near, [&](const Contact& part) {
+        const Contact contact = part.of(met.contact.ball);
+        if (!contact.is_nose() || contact == met.contact || !touches_part(plan_.geometry, contact, at))
+            return;
+        const Meeting another = balls_.meet(contact);
+        const auto is_one = [&another](const Meeting& m) {
+            return dot(planar(m.touch.n), planar(another.touch.n)) > kOneNormal;
+        };
+        if (another.touch.closing > noise && !resting_.has(contact) &&
+            std::none_of(all.begin(), all.end(), is_one))
+            all.add(another);
+    });
+    // A tree finds the parts in a different order.
+    std::sort(all.begin() + 1, all.end(), [](const Meeting& p, const Meeting& q) {
+        const Vec3 &m = p.touch.n, &n = q.touch.n;
+        return m.x() > n.x() || (m.x() == n.x() && m.y() > n.y());
+    });
+    return all;
+}
+
+void Resolver::cushion(const Meeting& first) {
+    if (first.ball.flies) {
+        cushion_in_air(first);
         return;
     }
-    TableTouches touches = table_touches(plan_, balls_, detector_, resting_, contact);
+    const int ball = first.contact.ball;
+    Noses noses = noses_with(first);
     const double e_c = plan_.balls.e_c;
     bool held = false;
-    for (const TableTouch& touch : touches) held |= resting_.try_begin(touch.approach, e_c);
+    for (const Meeting& met : noses) held |= resting_.try_begin(met, e_c);
     if (held) {
         resting_.start(ball);
         return;
     }
-    const Vec3 r = balls_.position(ball);
-    Velocities moves{balls_.velocity(ball), balls_.spin(ball)};
+    Velocities moves{first.ball.v, balls_.spin(ball)};
+    std::array<NoseTouch, 4> touches;
+    std::transform(noses.begin(), noses.end(), touches.begin(), [this](const Meeting& met) {
+        return with_nose(plan_.geometry, met.contact, [&](const auto& nose) {
+            return NoseTouch{-planar(met.touch.n), nose.height, &plan_.model_of(nose.partner)};
+        });
+    });
     const char* const model = touches[0].model->name;
     const MotionParams& motion = balls_.motion(ball);
     const bool hops = flights_ && balls_.segment(ball).state != MotionState::kFalling;
-    if (!bounce(plan_.balls, plan_.sizes[ball], touches.noses(),
+    if (!bounce(plan_.balls, plan_.sizes[ball], {touches.data(), noses.count},
                 hops ? std::optional(motion.gravity) : std::nullopt, plan_.impact.tolerance, moves))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another model",
                         model, log_.id(ball)));
-    const Segment after = after_impact(ball, r, moves.v, moves.w);
+    const Segment after = balls_.after_impact(ball, first.ball.r, moves);
     // A ball that rolls in slowly decelerates before the impact, but its remaining spin drives it back to the
     // cushion and ends the bounce. So the acceleration after the impact decides.
-    for (TableTouch& touch : touches) {
-        touch.approach.a_c = touch.pressing(after.a);
-        held |= holds(touch.approach.v_n, motion.slide, e_c) && resting_.try_begin(touch.approach, e_c);
+    for (Meeting& met : noses) {
+        met.pressing = met.touch.pressing(after.a);
+        held |= holds(met.touch.closing, motion.slide, e_c) && resting_.try_begin(met, e_c);
     }
     if (held) {
         resting_.start(ball);
         return;
     }
     if (cost_ != nullptr) cost_->method = model;
-    for (const TableTouch& touch : touches) {
-        const Contact& met = touch.approach.contact;
-        log_.event(is_jaw(met, plan_.geometry) ? EventType::kBallJaw : EventType::kBallCushion, met);
-    }
+    for (const Meeting& met : noses) log_.event(EventPhase::kImpact, met.contact);
     resting_.strike(ball, after);
     resting_.go_on();
 }
@@ -323,20 +336,19 @@ void Resolver::pocket(const Contact& contact) {
     }
     log_.begin(ball, falling_segment(balls_.now(), balls_.position(ball), balls_.velocity(ball),
                                      balls_.spin(ball), 0.0, motion));
-    log_.event(EventType::kBallEdge, contact);
+    log_.event(EventPhase::kTransition, contact);
 }
 
 // Whether another ball occupies the position where a ball would leave a pocket, having passed over while the
 // ball was sunk.
 bool Resolver::is_barred(int ball, const Vec3& place) const {
-    const double R = balls_.radius(ball), reach = R * (1.0 + kBoxShare);
+    const double R = balls_.radius(ball);
     bool barred = false;
-    detector_.balls_near({place.x() - reach, place.y() - reach, place.x() + reach, place.y() + reach},
-                         [&](int other) {
-                             const double apart = length3(balls_.placed(other).position - place);
-                             barred |= other != ball && !is_gone(balls_.segment(other).state) &&
-                                       apart < R + balls_.radius(other) - kTouchTolerance;
-                         });
+    detector_.balls_near(box_around(planar(place), R * (1.0 + kBoxShare)), [&](int other) {
+        const double apart = length3(balls_.placed(other).position - place);
+        barred |= other != ball && !is_gone(balls_.segment(other).state) &&
+                  apart < R + balls_.radius(other) - kTouchTolerance;
+    });
     return barred;
 }
 
@@ -346,9 +358,10 @@ void Resolver::leave_pocket(const Contact& contact) {
     const Pocket& pocket = plan_.geometry.pockets[contact.other];
     const Segment& s = balls_.segment(ball);
     const MotionParams& motion = balls_.motion(ball);
-    const Vec3 r = balls_.position(ball), v = balls_.velocity(ball);
-    const Vec2 out = planar(r) - pocket.center, n = out / length(out);
-    const double v_n = dot(n, planar(v)), falls = fall_speed(s, balls_.now() - s.start, motion.gravity);
+    const Meeting met = balls_.meet(contact);
+    const Vec3& r = met.ball.r;
+    const Vec2 n = planar(met.touch.n);
+    const double v_n = met.touch.closing, falls = fall_speed(s, balls_.now() - s.start, motion.gravity);
     // The fall began at the height of a ball on the cloth, unless another ball has hit this one since.
     const double sunk = falls * falls / (2.0 * motion.gravity * motion.R) - (r.z() - motion.R) / motion.R;
     const auto away = climbs(v_n, std::max(0.0, sunk), motion.R, motion.gravity);
@@ -360,7 +373,7 @@ void Resolver::leave_pocket(const Contact& contact) {
     const double rounding =
         0x1p-50 * (pocket.radius + std::abs(pocket.center.x()) + std::abs(pocket.center.y()));
     const Vec2 edge = pocket.center + (pocket.radius + rounding) * n;
-    const Vec2 after = planar(v) + (*away - v_n) * n;
+    const Vec2 after = planar(met.ball.v) + (*away - v_n) * n;
     const bool high = sunk < 0.0;  // another ball has thrown it up
     const Vec3 place(edge.x(), edge.y(), high ? motion.R * (1.0 - sunk) : motion.R);
     if (flights_ && is_barred(ball, place)) {
@@ -368,9 +381,8 @@ void Resolver::leave_pocket(const Contact& contact) {
         return;
     }
     const Vec3 leaves(after.x(), after.y(), high ? -falls : 0.0);
-    log_.begin(ball, high ? airborne_segment(balls_.now(), place, leaves, balls_.spin(ball), motion)
-                          : start_segment(balls_.now(), place, leaves, balls_.spin(ball), motion));
-    log_.event(EventType::kBallEdge, contact);
+    log_.begin(ball, free_segment(balls_.now(), place, leaves, balls_.spin(ball), motion));
+    log_.event(EventPhase::kTransition, contact);
 }
 
 void Resolver::transition(int ball) {

@@ -1,10 +1,11 @@
 // The effect of an event on the balls: impacts and state transitions.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "carom/engine/airborne.h"
-#include "loop/bounce.h"
 #include "loop/clusters.h"
 #include "loop/detector.h"
 #include "loop/log.h"
@@ -25,8 +26,8 @@ class Resolver {
     const Clusters& clusters() const { return clusters_; }
 
   private:
-    void ball_ball(int a, int b);
-    bool stop_at_once(int one, int two, double v_n);
+    void ball_ball(const Contact& contact);
+    bool stop_at_once(const Meeting& met);
     /// @param pair  also if no third ball is near: balls that graze each other
     bool cluster(int a, int b, double v_n, bool pair = false);
     void begin_cluster(int a, int b);
@@ -35,25 +36,32 @@ class Resolver {
     /// Whether the accelerations before or after the impact decide if balls are pressed together.
     enum class Pressed : std::uint8_t { kBefore, kAfter };
     bool hold_in_cluster(Pressed when);
-    void cushion(const Contact& contact);
+    void cushion(const Meeting& met);
+    /// The noses that a ball hits at one instant. A fifth one is dropped: the ball hits it next, at the same
+    /// instant.
+    struct Noses {
+        std::array<Meeting, 4> met;
+        std::size_t count = 0;
+        Meeting* begin() { return met.data(); }
+        Meeting* end() { return met.data() + count; }
+        void add(const Meeting& another) {
+            if (count < met.size()) met[count++] = another;
+        }
+    };
+    Noses noses_with(const Meeting& met) const;
     void pocket(const Contact& contact);
     void leave_pocket(const Contact& contact);
     bool is_barred(int ball, const Vec3& place) const;
     void transition(int ball);
-    Segment after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
-        return after_impact(balls_.now(), ball, r, v, w);
-    }
-    Segment after_impact(double time, int ball, const Vec3& r, const Vec3& v, const Vec3& w) const;
     // resolver_air.cpp
     bool is_free(int a, int b) const;
     void free_balls(int one, int two);
-    void cushion_in_air(const Contact& contact);
+    void cushion_in_air(const Meeting& met);
     void pocket_in_air(const Contact& contact);
     void land(int ball);
     void leave_table(int ball);
     void go_on(int ball, const Vec3& r, Velocities after);
     void fall_on(int ball, const Vec3& r, const Velocities& after);
-    void begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w);
 
     const Plan& plan_;
     const bool flights_;  // balls may leave the cloth

@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
-#include <vector>
 
-#include "contact/pocket_edge.h"
 #include "contact/touch.h"
 #include "loop/resolver.h"
 
@@ -31,7 +29,7 @@ void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
         hit_cloth(plan_.balls, motion, after);
         log_.event(EventType::kBallCloth, ball);
     }
-    begin(ball, r, after.v, after.w);
+    log_.begin(ball, balls_.after_impact(ball, r, after));
     log_.watch(ball);
 }
 
@@ -44,35 +42,28 @@ void Resolver::fall_on(int ball, const Vec3& r, const Velocities& after) {
 }
 
 void Resolver::free_balls(int a, int b) {
-    // Ball 1 has the smaller x, then y, then z.
-    const Placed pa = balls_.placed(a), pb = balls_.placed(b);
-    const auto before = [](const Vec3& p, const Vec3& q) {
-        if (p.x() != q.x()) return p.x() < q.x();
-        return p.y() != q.y() ? p.y() < q.y() : p.z() < q.z();
-    };
-    const bool swap = before(pb.position, pa.position);
+    const bool swap = comes_first(balls_.placed(b).position, balls_.placed(a).position);
     const int one = swap ? b : a, two = swap ? a : b;
-    Placed p1 = swap ? pb : pa, p2 = swap ? pa : pb;
     const bool in_space = balls_.in_space(one, two), sinks = balls_.sinks(one) || balls_.sinks(two);
-    if (sinks && !in_space) {
-        p1 = {balls_.position(one), balls_.velocity(one)};
-        p2 = {balls_.position(two), balls_.velocity(two)};
-        p1.position.z() = p2.position.z() = 0.0;
-    }
+    const auto at = [&](int ball) {
+        const Placed there = balls_.placed(ball);
+        if (!sinks || in_space) return BallAt{there.position, there.velocity, balls_.radius(ball)};
+        BallAt level = balls_.at(ball);
+        level.r.z() = 0.0;
+        return level;
+    };
+    const BallAt p1 = at(one), p2 = at(two);
     const auto lies = [&](int ball) {
         return !flies(balls_.segment(ball).state) && !(in_space && balls_.sinks(ball));
     };
 
-    if (lies(one) && lies(two)) {
-        const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
-        if (resting_.try_hold(approach, plan_.balls.e_b)) return;
-    }
+    if (lies(one) && lies(two) && resting_.try_hold(balls_.meet({one, With::kBall, two}), plan_.balls.e_b))
+        return;
     FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls), plan_.e_b()};
-    const Touch touch =
-        touch_ball({p1.position, p1.velocity, pair.size1.R}, {p2.position, p2.velocity, pair.size2.R});
+    const Touch touch = touch_ball(p1, p2);
     const Vec3& n = touch.n;
     const double v_n = touch.closing;
-    Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
+    Velocities ball1{p1.v, balls_.spin(one)}, ball2{p2.v, balls_.spin(two)};
     if (plan_.clusters != ClusterModel::kSequential && !sinks && cluster(a, b, v_n)) return;
     const std::optional<double> e_b =
         restitution_in_air(pair.e_b, v_n, parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity));
@@ -101,19 +92,16 @@ void Resolver::free_balls(int a, int b) {
     }
 }
 
-void Resolver::cushion_in_air(const Contact& contact) {
-    const int ball = contact.ball;
-    const Placed at = balls_.placed(ball);
-    const bool jaw = is_jaw(contact, plan_.geometry);
-    const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
-    const double R = balls_.radius(ball);
-    const Vec3 n = -touch_part(plan_.geometry, contact, BallAt{at.position, at.velocity, R, true}).n;
-    Velocities after{at.velocity, balls_.spin(ball)};
-    const bool slow = hit_nose(plan_.balls, R, model, n, parting_speed(R, plan_.gravity), after);
+void Resolver::cushion_in_air(const Meeting& met) {
+    const int ball = met.contact.ball;
+    const CushionModelInfo& model = plan_.model_of(partner_of(met.contact, plan_.geometry));
+    Velocities after{met.ball.v, balls_.spin(ball)};
+    const double R = met.ball.R;
+    const bool slow = hit_nose(plan_.balls, R, model, -met.touch.n, parting_speed(R, plan_.gravity), after);
     if (cost_ != nullptr) cost_->method = model.name;
-    log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
+    log_.event(EventPhase::kImpact, met.contact);
     if (slow) log_.mark_slow();
-    go_on(ball, at.position, after);
+    go_on(ball, met.ball.r, after);
 }
 
 void Resolver::pocket_in_air(const Contact& contact) {
@@ -129,13 +117,11 @@ void Resolver::land(int ball) {
     const MotionParams& motion = balls_.motion(ball);
     Vec3 r = balls_.position(ball);
     r.z() = motion.R;
-    const std::vector<Pocket>& pockets = plan_.geometry.pockets;
-    for (std::size_t k = 0; k < pockets.size(); ++k) {
-        if (!is_inside(pockets[k], planar(r))) continue;
-        log_.fall(ball, static_cast<int>(k));
-        return;
-    }
-    go_on(ball, r, {landing_velocity(s, motion), balls_.spin(ball)});
+    const int pocket = pocket_around(plan_.geometry, planar(r));
+    if (pocket >= 0)
+        log_.fall(ball, pocket);
+    else
+        go_on(ball, r, {landing_velocity(s, motion), balls_.spin(ball)});
 }
 
 void Resolver::leave_table(int ball) {

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "carom/engine/tolerances.h"
-#include "contact/place.h"
-#include "contact/pocket_edge.h"
+#include "contact/contact.h"
 #include "contact/resting_constants.h"
 #include "contact/touch.h"
 #include "physics/motion.h"
@@ -14,15 +13,6 @@
 namespace carom {
 
 namespace {
-
-EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
-    const Partner partner = contact.with == With::kBall ? Partner::kBall
-                            : is_jaw(contact, geometry) ? Partner::kJaw
-                                                        : Partner::kCushion;
-    return std::find_if(std::begin(kEventKinds), std::end(kEventKinds),
-                        [&](const EventKind& k) { return k.phase == phase && k.partner == partner; })
-        ->type;
-}
 
 bool lies(MotionState state) {
     return !flies(state) && !is_gone(state) && state != MotionState::kFalling;
@@ -42,14 +32,6 @@ bool touches(const RestingContact& c, int ball) {
 }
 
 }  // namespace
-
-ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two) {
-    const Touch touch = touch_level(balls.at(one), balls.at(two), plan.balls.discs());
-    return {{one, With::kBall, two},
-            planar(touch.n),
-            touch.closing,
-            touch.pressing(balls.segment(one).a - balls.segment(two).a)};
-}
 
 RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory)
     : Borrowed(memory), plan_(plan), balls_(balls), log_(log), lossless_(loses_nothing(plan)) {
@@ -86,12 +68,11 @@ bool RestingContacts::find(const Contact& contact) const {
 }
 
 // Whether the closing speed of a contact may be discarded: a lossless bounce continues.
-bool RestingContacts::may_lose(const ContactKinematics& a) const {
+bool RestingContacts::may_lose(const Meeting& met) const {
     if (!lossless_) return true;
-    const int partner = a.contact.partner();
-    double speeds = length(planar(balls_.velocity(a.contact.ball)));
-    if (partner >= 0) speeds += length(planar(balls_.velocity(partner)));
-    return a.v_n <= resting::kLosslessShare * speeds;
+    double speeds = length(planar(met.ball.v));
+    if (met.contact.partner() >= 0) speeds += length(planar(met.other.v));
+    return met.touch.closing <= resting::kLosslessShare * speeds;
 }
 
 // A contact becomes a resting contact if
@@ -103,14 +84,15 @@ bool RestingContacts::may_lose(const ContactKinematics& a) const {
 //   - or it has chattered (Zeno behaviour), as in a wedge with a plastic side, or when an impact travels back
 //     and forth through balls that rest on each other between two rails. The limit is again the resting
 //     contact. Elastic bounces count only if the closing speed has in fact fallen.
-bool RestingContacts::try_begin(const ContactKinematics& a, double restitution) {
-    const Contact& c = a.contact;
+bool RestingContacts::try_begin(const Meeting& met, double restitution) {
+    const Contact& c = met.contact;
     const int partner = c.partner();
+    const double v_n = met.touch.closing;
     if (is_gone(balls_.segment(c.ball).state)) return false;
-    note({balls_.now(), c, a.v_n});
+    note({balls_.now(), c, v_n});
     const bool rests = balls_.segment(c.ball).held || (partner >= 0 && balls_.segment(partner).held);
-    const double pressing = rests ? std::max(a.a_c, 2.0 * balls_.motion(c.ball).slide) : a.a_c;
-    if (!(holds(a.v_n, pressing, restitution) && may_lose(a)) && !chatters(c, a.v_n)) return false;
+    const double pressing = rests ? std::max(met.pressing, 2.0 * balls_.motion(c.ball).slide) : met.pressing;
+    if (!(holds(v_n, pressing, restitution) && may_lose(met)) && !chatters(c, v_n)) return false;
     // A ball that is pushed while it falls does not come back.
     bool falls = false;
     for (const int ball : {c.ball, partner}) {
@@ -119,8 +101,8 @@ bool RestingContacts::try_begin(const ContactKinematics& a, double restitution) 
         falls = true;
     }
     if (falls) return true;
-    contacts_.push_back({.contact = c, .n = a.n, .began = balls_.now()});
-    log_.event(with_phase(EventPhase::kHold, c, plan_.geometry), c);
+    contacts_.push_back({.contact = c, .n = planar(met.touch.n), .began = balls_.now()});
+    log_.event(EventPhase::kHold, c);
     return true;
 }
 
@@ -155,12 +137,12 @@ bool RestingContacts::chatters(const Contact& contact, double v_n) const {
 }
 
 void RestingContacts::end(const RestingContact& c) {
-    log_.event(with_phase(EventPhase::kRelease, c.contact, plan_.geometry), c.contact);
+    log_.event(EventPhase::kRelease, c.contact);
 }
 
-Segment RestingContacts::free_segment(int ball) const {
-    return start_segment(balls_.now(), balls_.position(ball), balls_.velocity(ball), balls_.spin(ball),
-                         balls_.motion(ball));
+void RestingContacts::begin_free(int ball) {
+    const BallAt at = balls_.at(ball);
+    log_.begin(ball, balls_.after_impact(ball, at.r, {at.v, balls_.spin(ball)}));
 }
 
 void RestingContacts::release(int ball) {
@@ -172,7 +154,7 @@ void RestingContacts::release(int ball) {
     sort_by_place(ended);
     for (const RestingContact& c : ended) end(c);
     // From here the ball has a free segment, which the caller replaces.
-    log_.begin(ball, free_segment(ball));
+    begin_free(ball);
     for (const RestingContact& c : ended) {
         const int partner = c.contact.ball == ball ? c.contact.partner() : c.contact.ball;
         if (partner >= 0 && balls_.segment(partner).held) solve(partner, Transitions::kNotYet);
@@ -229,7 +211,7 @@ void RestingContacts::go_on() {
         if (in_contact(ball))
             solve(ball, Transitions::kNotYet);
         else if (!is_new)
-            log_.begin(ball, free_segment(ball));
+            begin_free(ball);
     }
 }
 
@@ -301,10 +283,8 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     for (const RestingBall& member : group.balls) log_.begin(member.ball, member.segment);
     if (!any_released) return;
     // After a release, a ball without resting contacts is free; the others form smaller groups.
-    for (const RestingBall& m : group.balls) {
-        if (!in_contact(m.ball))
-            log_.begin(m.ball, start_segment(balls_.now(), m.r, m.v, m.w, balls_.motion(m.ball)));
-    }
+    for (const RestingBall& m : group.balls)
+        if (!in_contact(m.ball)) log_.begin(m.ball, balls_.after_impact(m.ball, m.r, {m.v, m.w}));
 }
 
 // Logs only transitions that really happened: a ball that the group drives on at once has not stopped, and a
@@ -345,10 +325,7 @@ void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const
 }
 
 void RestingContacts::refresh_normal(RestingContact& c) const {
-    const BallAt ball = balls_.at(c.contact.ball);
-    c.n = planar(c.contact.with == With::kBall
-                     ? touch_level(ball, balls_.at(c.contact.other), plan_.balls.discs()).n
-                     : touch_part(plan_.geometry, c.contact, ball).n);
+    c.n = planar(balls_.meet(c.contact).touch.n);
 }
 
 }  // namespace carom

@@ -9,18 +9,8 @@
 #include "contact/resting.h"
 #include "loop/balls.h"
 #include "loop/log.h"
-#include "loop/memory.h"
 
 namespace carom {
-
-/// The motion of a ball relative to its partner in a contact.
-struct ContactKinematics {
-    Contact contact;
-    Vec2 n;            ///< unit, from the ball to the other one or into the part
-    double v_n = 0.0;  ///< [m/s] closing speed
-    double a_c = 0.0;  ///< [m/s^2] closing acceleration
-};
-ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two);
 
 struct RestingMemory {
     struct Struck {
@@ -49,14 +39,14 @@ class RestingContacts : private Borrowed<RestingMemory> {
     /// Begins a resting contact instead of a bounce if the conditions hold (tests/README.md, H5 and H7).
     /// @param restitution  of the bounce
     /// @return whether it is a resting contact now
-    bool try_hold(const ContactKinematics& approach, double restitution) {
-        if (!try_begin(approach, restitution)) return false;
-        start(approach.contact.ball);
+    bool try_hold(const Meeting& met, double restitution) {
+        if (!try_begin(met, restitution)) return false;
+        start(met.contact.ball);
         return true;
     }
     /// try_hold() in two parts, for contacts of one ball that begin together: call start() after the last
     /// one.
-    bool try_begin(const ContactKinematics& approach, double restitution);
+    bool try_begin(const Meeting& met, double restitution);
     void start(int ball);
     /// Ends all resting contacts of a ball before another event changes its motion; its partners continue
     /// without it.
@@ -78,7 +68,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     const Struck* find_struck(int ball) const;
     bool goes_on(RestingContact& contact) const;
     bool chatters(const Contact& contact, double v_n) const;
-    bool may_lose(const ContactKinematics& approach) const;
+    bool may_lose(const Meeting& met) const;
     void note(const Bounce& bounce);
     bool has_fallen(const Event& from, const Contact& contact, double v_n) const;
     void end(const RestingContact& contact);
@@ -87,7 +77,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     bool has_come_to_transition(const Segment& segment) const;
     void log_transitions(const RestingGroup& group);
     bool release_past_ends(RestingGroup& group);
-    Segment free_segment(int ball) const;
+    void begin_free(int ball);
     void refresh_normal(RestingContact& contact) const;
     void sort_by_place(std::vector<RestingContact>& contacts) const;
 

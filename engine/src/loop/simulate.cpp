@@ -143,9 +143,7 @@ void Run::start_balls() {
     const bool flies = plan_.in_force(Effect::kAirborne);
     for (int i = 0; i < balls_.count(); ++i) {
         const BallStart& ball = scene.ball[i];
-        const MotionParams& motion = balls_.motion(i);
-        log_.begin(i, flies ? free_segment(0.0, ball.position, ball.velocity, ball.spin, motion)
-                            : start_segment(0.0, ball.position, ball.velocity, ball.spin, motion));
+        log_.begin(i, balls_.after_impact(i, ball.position, {ball.velocity, ball.spin}));
     }
     for (int i = 0; scene.cue && i < balls_.count(); ++i) {
         if (log_.id(i) != scene.cue->ball) continue;

@@ -7,9 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "plan/reach.h"
-#include "plan/words.h"
-
 namespace carom {
 
 /// The inputs of the decisions. The plan contains the decisions already made.

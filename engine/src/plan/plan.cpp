@@ -18,8 +18,6 @@
 #include "physics/cue.h"
 #include "physics/motion.h"
 #include "plan/effects.h"
-#include "plan/reach.h"
-#include "plan/words.h"
 
 namespace carom {
 
@@ -85,8 +83,8 @@ Geometry geometry_of(const Scene& scene) {
         geometry.cushions.push_back(line_of(cushion, inset(cushion.height)));
         for (const Vec2& end : {cushion.from, cushion.to})
             if (needs_tip(geometry, table, end))
-                geometry.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion,
-                                          static_cast<int>(i), inset(cushion.height)});
+                geometry.noses.push_back({end, 0.0, cushion.height, Partner::kCushion, static_cast<int>(i),
+                                          inset(cushion.height)});
     }
     std::vector<std::pair<Jaw, int>> jaws;
     for (const Jaw& jaw : table.jaws) jaws.emplace_back(jaw, static_cast<int>(jaws.size()));
@@ -99,7 +97,7 @@ Geometry geometry_of(const Scene& scene) {
         for (const Vec2& out : {nose.span.from, nose.span.to}) {
             const Vec2 end = jaw.center + jaw.radius * out;
             if (needs_tip(geometry, table, end))
-                geometry.noses.push_back({end, 0.0, jaw.height, EventType::kBallJaw, i, inset(jaw.height)});
+                geometry.noses.push_back({end, 0.0, jaw.height, Partner::kJaw, i, inset(jaw.height)});
         }
     }
     geometry.pockets = table.pockets;
@@ -292,9 +290,8 @@ ArcSpan span_of(const Jaw& jaw) {
 }
 
 Nose nose_of(const Jaw& jaw, int index, double inset) {
-    return {
-        jaw.center,  jaw.around() ? -jaw.radius : jaw.radius, jaw.height, EventType::kBallJaw, index, inset,
-        span_of(jaw)};
+    return {jaw.center,  jaw.around() ? -jaw.radius : jaw.radius, jaw.height, Partner::kJaw, index, inset,
+            span_of(jaw)};
 }
 
 double nose_inset(CushionTouch touch, double R, double height) {

@@ -1,4 +1,5 @@
-#include "plan/reach.h"
+// How far the balls of a scene can get: bounds that hold for the whole shot.
+#include "plan/effects.h"
 
 #include <fmt/format.h>
 

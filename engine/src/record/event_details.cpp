@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "carom/engine/frozen.h"
 #include "carom/engine/geometry.h"
 #include "carom/engine/math.h"
+#include "carom/engine/vec.h"
 #include "contact/touch.h"
 #include "physics/motion.h"
-#include "record/verify_between.h"
+#include "record/verify_parts.h"
 
 namespace carom {
 namespace {
@@ -149,11 +152,11 @@ constexpr EventColumn kColumns[] = {
 }  // namespace
 
 std::string met_name(const Record& record, const Event& event) {
+    const Partner partner = kind(event.type).partner;
     const auto named = [&](const auto& parts) { return parts[static_cast<std::size_t>(event.b)].name; };
     std::string text;
-    if (event.b >= 0 && kind(event.type).partner == Partner::kCushion) text = named(record.table.cushions);
-    if (event.b >= 0 && kind(event.type).partner == Partner::kJaw) text = named(record.table.jaws);
-    if (event.b >= 0 && kind(event.type).partner == Partner::kPocket) text = named(record.table.pockets);
+    if (event.b >= 0 && partner != Partner::kNone && partner != Partner::kBall)
+        text = with_parts(record.table, partner, named);
     return text.empty() ? record.partner_id(event) : text;
 }
 
@@ -262,6 +265,46 @@ void event_row(const Record& record, std::size_t event, std::span<double> row) {
     put(d.point);
     put(d.normal);
     for (const double value : {d.cut * kDegrees, d.closing, d.impulse, d.lost, d.diamond}) *at++ = value;
+}
+
+namespace {
+
+// [ball radii] A ball that has moved away from a cushion by less than this has not left it: rounding of
+// positions, far below anything visible.
+constexpr double kStillFrozen = 1e-9;
+
+/// How long segment `i` is in force [s after its start], at most until `time`.
+double lasts(std::span<const Segment> segments, std::size_t i, double time) {
+    const double next =
+        i + 1 < segments.size() ? segments[i + 1].start : std::numeric_limits<double>::infinity();
+    return std::min({std::min(next, time) - segments[i].start, segments[i].duration});
+}
+
+}  // namespace
+
+double farthest(std::span<const Segment> segments, const Vec2& along, double time) {
+    double most = dot(along, planar(segments.front().r));
+    for (std::size_t i = 0; i < segments.size() && segments[i].start <= time; ++i) {
+        const Segment& s = segments[i];
+        const double whole = lasts(segments, i, time);
+        const double v = dot(along, planar(s.v)), a = dot(along, s.a);
+        // The ends, and the turning point.
+        for (const double tau : {0.0, whole, a < 0.0 ? std::clamp(-v / a, 0.0, whole) : whole})
+            most = std::max(most, dot(along, planar(position_at(s, tau))));
+    }
+    return most;
+}
+
+bool still_frozen(const Table& table, const Hit& hit, std::span<const Segment> segments, double R) {
+    const Vec2 start = planar(segments.front().r);
+    const Vec2 away = start - nearest_point(table, hit.partner, hit.b, start);
+    if (away.isZero(0.0)) return false;
+    const Vec2 along = away / length(away);
+    const double from = dot(along, start), slack = kStillFrozen * R;
+    std::size_t last = 0;
+    while (last + 1 < segments.size() && segments[last + 1].start <= hit.time) ++last;
+    const Vec2 here = planar(position_at(segments[last], lasts(segments, last, hit.time)));
+    return dot(along, here) >= from - slack && farthest(segments, along, hit.time) <= from + slack;
 }
 
 }  // namespace carom

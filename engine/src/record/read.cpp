@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <string>
@@ -13,8 +14,8 @@
 
 #include "carom/engine/record.h"
 #include "carom/engine/tolerances.h"
-#include "record/format.h"
 #include "record/json_text.h"
+#include "record/record_json.h"
 
 namespace carom {
 namespace {
@@ -148,19 +149,10 @@ BallTrack read_track(const JsonValue& value, const Table& table) {
 
 /// Number of possible values of an event's b: the index of a ball, cushion, jaw or pocket; 0 if it has none.
 std::int64_t partners(Partner partner, const Record& record) {
-    switch (partner) {
-        case Partner::kBall:
-            return static_cast<std::int64_t>(record.tracks.size());
-        case Partner::kCushion:
-            return static_cast<std::int64_t>(record.table.cushions.size());
-        case Partner::kJaw:
-            return static_cast<std::int64_t>(record.table.jaws.size());
-        case Partner::kPocket:
-            return static_cast<std::int64_t>(record.table.pockets.size());
-        case Partner::kNone:
-            break;
-    }
-    return 0;
+    if (partner == Partner::kNone) return 0;
+    if (partner == Partner::kBall) return std::ssize(record.tracks);
+    return with_parts(record.table, partner,
+                      [](const auto& parts) -> std::int64_t { return std::ssize(parts); });
 }
 
 Hit read_hit(const JsonValue& value, const Record& record) {

@@ -11,6 +11,7 @@
 
 #include "base/record_hash.h"
 #include "carom/engine/math.h"
+#include "carom/engine/next_scene.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -226,21 +227,17 @@ std::string Record::hash() const {
 }
 
 std::string Record::partner_id(Partner partner, int number) const {
-    if (number < 0) return "";
+    if (number < 0 || partner == Partner::kNone) return "";
     const auto index = static_cast<std::size_t>(number);
-    switch (partner) {
-        case Partner::kBall:
-            return tracks[index].id;
-        case Partner::kCushion:
-            return table.cushions[index].id;
-        case Partner::kJaw:
-            return table.jaws[index].id;
-        case Partner::kPocket:
-            return table.pockets[index].id;
-        case Partner::kNone:
-            break;
-    }
-    return "";
+    if (partner == Partner::kBall) return tracks[index].id;
+    return with_parts(table, partner, [index](const auto& parts) { return parts[index].id; });
+}
+
+Scene next_scene(const Scene& scene, const Record& record, const Cue& cue) {
+    Scene next = scene_after(scene, record);
+    next.cue = cue;
+    validate(next);
+    return next;
 }
 
 }  // namespace carom

@@ -1,10 +1,11 @@
-#include "record/verify_events.h"
+// Compares the events of a record with its segments, and computes every impact again.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,16 +13,13 @@
 
 #include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
-#include "contact/pocket_edge.h"
 #include "contact/touch.h"
 #include "physics/cluster.h"
 #include "physics/cue.h"
 #include "physics/cushion/bounce.h"
 #include "physics/motion.h"
-#include "physics/touch_tolerance.h"
-#include "record/gaps.h"
-#include "record/verify_hits.h"
-#include "record/verify_motion.h"
+#include "physics/reach.h"
+#include "record/verify_parts.h"
 
 namespace carom {
 namespace {
@@ -526,8 +524,7 @@ class Events {
             const Contact contact = contact_of(e);
             const BallAt at = body(ball, !in_air);
             const Touch met = touch_part(plan_.geometry, contact, at);
-            const bool jaw = is_jaw(contact, plan_.geometry);
-            const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
+            const CushionModelInfo& model = plan_.model_of(partner_of(contact, plan_.geometry));
             double gap = met.gap;
             if (contact.with == With::kNose && !beside(plan_.geometry.noses[contact.other], at, kSamePlace))
                 gap = kNever;
@@ -544,12 +541,14 @@ class Events {
                 free(ball, m.v, m.w);
                 return step(ball, event_);
             }
-            touches.push_back({-planar(met.n), part_height(plan_.geometry, contact), &model});
+            const double height =
+                with_nose(plan_.geometry, contact, [](const auto& nose) { return nose.height; });
+            touches.push_back({-planar(met.n), height, &model});
             // Other parts that it touches and approaches belong to the same bounce, each of them once.
             parts.push_back(contact);
             if (event_ == last_ || kind(record_.events[event_].type).phase != EventPhase::kImpact) break;
             const Contact next = contact_of(record_.events[event_]);
-            if (next.ball != contact.ball || (next.with != With::kCushion && next.with != With::kNose) ||
+            if (next.ball != contact.ball || !next.is_nose() ||
                 std::find(parts.begin(), parts.end(), next) != parts.end() || !has_part(next) ||
                 !touches_part(plan_.geometry, next, at) ||
                 !(touch_part(plan_.geometry, next, at).closing > noise))
@@ -583,7 +582,7 @@ class Events {
     }
 
     void pocket(std::size_t ball, const Pocket& pocket) {
-        const double beyond = length(planar(changed_[ball].at.position) - pocket.center) - pocket.radius;
+        const double beyond = -touch_part(pocket, body(ball, true)).gap;
         const bool at_once = plan_.scene.physics.pocket == PocketModel::kAtOnce || record_.gravity == 0.0;
         if (beyond > same_place(ball))
             report("U6", "ball {} is {:.3g} m beside pocket {}", id(ball), beyond, pocket.id);
@@ -593,21 +592,20 @@ class Events {
 
     void edge(std::size_t ball, const Pocket& pocket) {
         Changed& c = changed_[ball];
-        const Vec2 out = planar(c.at.position) - pocket.center, n = out / length(out);
+        const Touch met = touch_part(pocket, body(ball, true));
         // A ball may begin inside.
-        if (length(out) - pocket.radius > same_place(ball) ||
-            (now_ > 0.0 && pocket.radius - length(out) > same_place(ball)))
-            return report("U6", "ball {} is {:.3g} m from the edge of pocket {}", id(ball),
-                          length(out) - pocket.radius, pocket.id);
+        if (-met.gap > same_place(ball) || (now_ > 0.0 && met.gap > same_place(ball)))
+            return report("U6", "ball {} is {:.3g} m from the edge of pocket {}", id(ball), -met.gap,
+                          pocket.id);
         if (!falls(ball)) {
             if (after(ball).state != MotionState::kFalling && !is_gone(after(ball).state))
                 report("U6", "ball {} passes the edge of pocket {} and does not fall", id(ball), pocket.id);
             return;
         }
-        const double v_n = dot(n, planar(c.at.velocity)), sunk = (R(ball) - c.at.position.z()) / R(ball);
+        const double v_n = met.closing, sunk = (R(ball) - c.at.position.z()) / R(ball);
         const auto away = climbs(v_n, std::max(0.0, sunk), R(ball), record_.gravity);
         if (!away) return report("U6", "ball {} comes out of pocket {} too slowly", id(ball), pocket.id);
-        c.at.velocity.head<2>() += (*away - v_n) * n;
+        c.at.velocity.head<2>() += (*away - v_n) * planar(met.n);
         if (sunk < 0.0) return;
         c.at.velocity.z() = 0.0;
         c.at.position.z() = R(ball);

@@ -1,13 +1,15 @@
-#include "record/verify_hits.h"
+// Whether the hits that a record lists for a cluster explain the motion of its balls.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "carom/engine/event_details.h"
-#include "record/verify_motion.h"
+#include "record/verify_parts.h"
 
 namespace carom {
 namespace {

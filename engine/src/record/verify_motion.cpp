@@ -1,10 +1,11 @@
-#include "record/verify_motion.h"
+#include "record/verify_parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>

@@ -12,8 +12,7 @@
 
 #include "base/output_file.h"
 #include "carom/engine/record.h"
-#include "record/format.h"
-#include "record/inputs_json.h"
+#include "record/record_json.h"
 
 namespace carom {
 namespace {

@@ -1,4 +1,5 @@
-#include "scene/aim.h"
+// Aims in a player's words: at a ball, at a part of it, at a diamond, into a pocket.
+#include "scene/sections.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,8 +12,7 @@
 #include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
 #include "contact/touch.h"
-#include "physics/nose_reach.h"
-#include "physics/touch_tolerance.h"
+#include "physics/reach.h"
 #include "scene/sections.h"
 
 namespace carom::detail {
@@ -71,10 +70,10 @@ void check_reach(const Section& top, const Scene& scene) {
             // No cloth lies inside the circle of a jaw, however high the ball starts.
             BallAt there = at;
             there.flies = at.flies && !behind(nose, p);
-            return -touch_round(nose, there).gap;
+            return -touch_part(nose, there).gap;
         };
         const auto depth_at = [&](const Vec2& point, double height) {
-            return depth_in({point, 0.0, height, EventType::kBallCushion, 0});
+            return depth_in({point, 0.0, height, Partner::kCushion, 0});
         };
         // Most parts are far from most balls, and a batch checks every shot.
         const auto is_far = [&](const Vec2& a, const Vec2& b, double radius) {

@@ -16,7 +16,6 @@
 #include "base/nearest.h"
 #include "base/toml_number.h"
 #include "scene/reader.h"
-#include "scene/toml_depth.h"
 
 namespace carom::detail {
 

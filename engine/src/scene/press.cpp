@@ -1,11 +1,14 @@
-#include "scene/press.h"
+// Balls of a rack pressed together.
+#include "scene/rack.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "carom/engine/ball_ball.h"
 

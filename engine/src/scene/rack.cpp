@@ -11,7 +11,6 @@
 #include "base/draws.h"
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/math.h"
-#include "scene/press.h"
 
 namespace carom {
 namespace {

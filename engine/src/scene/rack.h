@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carom/engine/scene.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom {
 
@@ -25,7 +26,7 @@ int balls_of(const Rack& rack);
 ///
 /// With rack.radius_sd, the radii are normal about R, truncated at 2.5 standard deviations, from their own
 /// stream of draws. Unlike balls of a rack are pressed together until neighbours are rack.gap apart
-/// (press.h), then jittered.
+/// (press()), then jittered.
 ///
 /// The apex, or rack.spot_ball (which must be in the rack), is at rack.position, by default the foot spot
 /// (snooker: behind the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg about
@@ -47,5 +48,16 @@ int balls_of(const Rack& rack);
 /// @throws std::invalid_argument if a scatter finds no room
 std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R,
                                   std::span<const BallStart> others = {});
+
+/// Moves balls of unlike size from the lattice of balls of radius R until neighbours are `gap` apart. N balls
+/// have 2N - 3 relative degrees of freedom, and a rack with a ball in the middle of six others has more
+/// contacts than that: each such ball leaves one contact open. Slightly different forces draw neighbours
+/// together and decide which contact it is.
+///
+/// @param fixed   the ball that stays in place; the rack as a whole does not rotate
+/// @param random  determines the forces
+/// @throws std::invalid_argument if the balls do not come to rest (radii that differ by tens of percent)
+void press(std::vector<Vec2>& places, std::span<const double> radii, double R, double gap, std::size_t fixed,
+           SplitMix64& random);
 
 }  // namespace carom

@@ -16,7 +16,6 @@
 #include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 #include "carom/kernel/tolerance.h"
-#include "scene/aim.h"
 #include "scene/rack.h"
 
 namespace carom {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "carom/engine/scene_number.h"
 #include "carom/engine/tolerances.h"
@@ -61,5 +62,17 @@ toml::table toml_from(std::string_view text, const std::string& name);
 Section top_of(const toml::table& file, const std::string& name);
 /// The validated scene of a file; messages use `name` for the file. @throws SceneError
 Scene scene_from(const toml::table& file, const std::string& name);
+
+/// Keys of [cue] that replace aim_deg or speed.
+inline const std::vector<std::string_view> kAimKeys = {"aim_at", "aim_hit", "aim_diamond", "ghost",
+                                                       "ball_speed"};
+
+/// Sets aim_deg and speed by these keys. All balls of the scene must be known.
+/// @param s  the section [cue], with the keys of cues and kAimKeys
+/// @throws SceneError for two aims, two speeds, or an impossible one
+void read_aim(const Section& s, const Scene& scene, Cue& cue);
+
+/// Replaces these keys by the resulting aim_deg and speed; keeps ball_speed if it is to be varied.
+void write_aim(toml::table& file, const Cue& cue, bool keep_ball_speed);
 
 }  // namespace carom::detail

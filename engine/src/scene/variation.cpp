@@ -12,7 +12,6 @@
 #include "base/draws.h"
 #include "base/fnv.h"
 #include "carom/engine/tolerances.h"
-#include "scene/aim.h"
 #include "scene/distribution.h"
 #include "scene/keys.h"
 #include "scene/rack.h"

@@ -11,7 +11,6 @@
 
 #include "base/clock.h"
 #include "base/console.h"
-#include "base/rounds.h"
 #include "base/setup.h"
 #include "bench/timed_kernel.h"
 #include "carom/kernel/closed_forms.h"

@@ -10,7 +10,6 @@
 #include "base/console.h"
 #include "base/machine.h"
 #include "base/options.h"
-#include "base/rounds.h"
 #include "base/setup.h"
 #include "bench/shot_cases.h"
 #include "carom/engine/ball_ball.h"

@@ -12,7 +12,6 @@
 #include "base/console.h"
 #include "base/machine.h"
 #include "base/options.h"
-#include "base/rounds.h"
 #include "base/setup.h"
 #include "bench/five_states.h"
 #include "bench/many_shots.h"

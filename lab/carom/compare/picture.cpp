@@ -11,7 +11,7 @@
 
 #include "carom/engine/event_details.h"
 #include "carom/engine/vec.h"
-#include "commands/compare/ball_way.h"
+#include "commands/compare/difference.h"
 
 namespace carom::tools {
 namespace {

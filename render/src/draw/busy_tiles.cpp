@@ -1,9 +1,11 @@
-#include "draw/busy_tiles.h"
+// Finds the parts of a picture that need more than one sample per pixel.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "draw/table_edges.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "draw/screen_values.h"
+#include "draw/mean_picture.h"
 
 namespace carom::render {
 

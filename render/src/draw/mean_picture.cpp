@@ -4,8 +4,6 @@
 #include <cstring>
 #include <utility>
 
-#include "draw/screen_values.h"
-
 namespace carom::render {
 
 MeanPicture::MeanPicture(std::vector<std::uint8_t>& rgba, int width, std::vector<PixelBox> boxes)

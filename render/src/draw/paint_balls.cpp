@@ -1,8 +1,11 @@
-#include "draw/paint_balls.h"
+// Balls and their shadows, painted over a picture of the table.
+#include "draw/paint_shapes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "carom/render/look.h"
 #include "draw/shader_numbers.h"

@@ -25,4 +25,10 @@ bool is_before(const DrawnBall& ball, const DrawCue& cue, const View& view, cons
 void paint_box(const Canvas& canvas, const DrawBox& box, const PixelBox& pixels,
                const std::vector<std::uint8_t>& glyphs);
 
+/// Darkens the surroundings of a ball: the cloth, and cushions and wood if they are near.
+void paint_shadow(const Canvas& canvas, const DrawnBall& ball);
+
+/// Paints a ball. @param glyphs the atlas of glyph_atlas(), for its number
+void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<std::uint8_t>& glyphs);
+
 }  // namespace carom::render

@@ -12,7 +12,6 @@
 #include "draw/canvas.h"
 #include "draw/drawn_balls.h"
 #include "draw/edge_smoother.h"
-#include "draw/paint_balls.h"
 #include "draw/paint_shapes.h"
 #include "draw/shaders.h"
 #include "draw/static_layer.h"

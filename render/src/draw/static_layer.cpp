@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "draw/busy_tiles.h"
 #include "draw/mean_picture.h"
 #include "draw/shader_numbers.h"
 #include "draw/shaders.h"
+#include "draw/table_edges.h"
 #include "gl/objects.h"
 
 namespace carom::render {

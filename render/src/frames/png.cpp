@@ -5,9 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "base/output_file.h"
 #include "carom/render/error.h"
+#include "carom/render/kept_png.h"
+#include "frames/png_pieces.h"
 
 namespace carom::render {
 
@@ -67,6 +76,38 @@ void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes)
     const bool good = encode_rows(png, info, image, level);
     png_destroy_write_struct(&png, &info);
     if (!good) throw RenderError(std::string("libpng cannot encode the frame: ") + failure.text.data());
+}
+
+void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+    try {
+        OutputFile file(path);
+        file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        file.commit();
+    } catch (const std::runtime_error& error) {
+        throw RenderError(error.what());
+    }
+}
+
+struct KeptPng::Impl {
+    ChangedBoxes changed;
+    PngPieces pieces;
+};
+
+KeptPng::KeptPng() : impl_(std::make_unique<Impl>()) {}
+KeptPng::~KeptPng() = default;
+KeptPng::KeptPng(KeptPng&&) noexcept = default;
+KeptPng& KeptPng::operator=(KeptPng&&) noexcept = default;
+
+void KeptPng::encode(const KeptImage& image, std::vector<std::uint8_t>& bytes) {
+    impl_->pieces.encode(image.image(), impl_->changed.next(image), bytes);
+}
+
+void KeptPng::encode(const Image& image, std::vector<std::uint8_t>& bytes) {
+    impl_->pieces.encode(image, impl_->changed.next(image), bytes);
+}
+
+double KeptPng::share() const {
+    return impl_->pieces.share();
 }
 
 }  // namespace carom::render

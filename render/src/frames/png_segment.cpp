@@ -1,9 +1,11 @@
-#include "frames/png_segment.h"
+// One piece of one row of a picture, as bits of a PNG file.
+#include "frames/png_pieces.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "frames/png_code.h"

@@ -1,10 +1,14 @@
+#include <fmt/core.h>
+
 #include "carom/render/sequence.h"
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -13,9 +17,10 @@
 #include <thread>
 #include <utility>
 
-#include "base/file_lock.h"
+#include "base/output_file.h"
 #include "carom/engine/tolerances.h"
 #include "carom/render/draw_list.h"
+#include "carom/render/error.h"
 #include "carom/render/kept_png.h"
 #include "carom/render/png.h"
 #include "carom/render/renderer.h"
@@ -265,6 +270,30 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
     std::vector<std::uint8_t> bytes;
     options.libpng ? encode_png(sheet, kFrameLevel, bytes) : KeptPng().encode(sheet, bytes);
     write_file(path, bytes);
+}
+
+std::string y4m_header(FrameSize size, double fps) {
+    // Continued fractions: the first ratio that is close enough has the smallest numbers.
+    constexpr double kNear = 1e-9, kMost = std::numeric_limits<std::int32_t>::max();
+    double rest = fps, p = 1.0, q = 0.0, p_before = 0.0, q_before = 1.0;
+    while (std::isfinite(rest)) {
+        const double whole = std::floor(rest);
+        const double p_next = whole * p + p_before, q_next = whole * q + q_before;
+        if (!(p_next <= kMost && q_next <= kMost)) break;
+        p_before = p;
+        q_before = q;
+        p = p_next;
+        q = q_next;
+        if (p > 0.0 && std::abs(p / q - fps) <= kNear * fps) {
+            return fmt::format(
+                "YUV4MPEG2 W{} H{} F{:.0f}:{:.0f} Ip A1:1 C420jpeg XYSCSS=420JPEG XCOLORRANGE=LIMITED\n",
+                size.width, size.height, p, q);
+        }
+        rest = 1.0 / (rest - whole);
+    }
+    throw RenderError(fmt::format(
+        "Y4M cannot express {} frames per second as a ratio of two whole numbers; choose another --fps",
+        fps));
 }
 
 }  // namespace carom::render

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "carom/render/error.h"
+#include "gl/api.h"
 
 namespace carom::render::gl {
 
@@ -63,6 +64,16 @@ GLuint make_framebuffer(const Api& api, GLuint color, GLuint depth) {
 void bind_texture(const Api& api, int unit, GLuint texture) {
     api.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     api.BindTexture(GL_TEXTURE_2D, texture);
+}
+
+Api load_api(Lookup lookup) {
+    Api api;
+#define CAROM_GL_LOAD(type, fn)                        \
+    api.fn = reinterpret_cast<type>(lookup("gl" #fn)); \
+    if (api.fn == nullptr) throw RenderError("the OpenGL driver lacks gl" #fn "; carom needs OpenGL 3.3");
+    CAROM_GL_FUNCTIONS(CAROM_GL_LOAD)
+#undef CAROM_GL_LOAD
+    return api;
 }
 
 }  // namespace carom::render::gl

@@ -1,9 +1,11 @@
-#include "stage/outline.h"
+// Cushions and jaws joined to the outlines that balls bounce off.
+#include "stage/mesh_builder.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace carom::render {
 

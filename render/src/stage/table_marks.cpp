@@ -1,4 +1,5 @@
-#include "stage/table_marks.h"
+// Painted or inlaid marks of a table: diamonds, strings and spots.
+#include "stage/mesh_builder.h"
 
 #include <cmath>
 #include <string_view>

@@ -8,7 +8,6 @@
 
 #include "carom/engine/event_details.h"
 #include "stage/mesh_builder.h"
-#include "stage/table_marks.h"
 
 namespace carom::render {
 

@@ -93,7 +93,8 @@ struct PairImpact {
 /// Whether `q` is ball 1 of an impact, so that the ids do not affect the result, to the last bit: the ball
 /// with the smaller x, then y. From the other ball, a march with a set number of steps has another error.
 inline bool comes_first(const Vec3& q, const Vec3& p) {
-    return q.x() < p.x() || (q.x() == p.x() && q.y() < p.y());
+    if (q.x() != p.x()) return q.x() < p.x();
+    return q.y() != p.y() ? q.y() < p.y() : q.z() < p.z();
 }
 
 /// Replaces the velocities of two colliding balls on the cloth, unless the status is an error. The friction

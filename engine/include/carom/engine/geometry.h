@@ -16,6 +16,8 @@ struct CushionLine {
     double length;
     double height;
     double inset = 0.0;  ///< [m] a ball touches it with its centre at R - inset (cushion_touch)
+    static constexpr Partner partner = Partner::kCushion;
+    bool operator==(const CushionLine&) const = default;
 };
 
 CushionLine line_of(const Cushion& cushion, double inset);
@@ -31,6 +33,7 @@ struct ArcSpan {
         const bool after = cross(from, out) >= -slack, before = cross(out, to) >= -slack;
         return wide ? after || before : after && before;
     }
+    bool operator==(const ArcSpan&) const = default;
 };
 ArcSpan span_of(const Jaw& jaw);
 
@@ -39,12 +42,13 @@ struct Nose {
     Vec2 center;
     double radius;  ///< negative for a wall around the balls: all distances from it are then negative, too
     double height;
-    EventType type;      ///< kBallJaw or kBallCushion
+    Partner partner;     ///< kJaw or kCushion
     int index;           ///< of the jaw or cushion in scene.table
     double inset = 0.0;  ///< [m] a ball touches it with its centre at R + radius - inset
     ArcSpan span{};
     double sign() const { return radius < 0.0 ? -1.0 : 1.0; }
     bool is_arc() const { return radius < 0.0 || !span.whole; }
+    bool operator==(const Nose&) const = default;
 };
 /// Whether two noses are on one circle, with the balls on the same side.
 inline bool continues(const Nose& one, const Nose& other) {
@@ -62,6 +66,7 @@ struct Geometry {
     std::vector<Nose> noses;
     std::vector<Pocket> pockets;
     std::vector<Nose> joined{};  ///< arcs that continue another one: all on a circle are one nose
+    bool operator==(const Geometry&) const = default;
 };
 
 }  // namespace carom

@@ -65,7 +65,8 @@ struct Plan {
     Geometry geometry;                          ///< empty lists if nothing can reach them
     const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
     const CushionModelInfo* jaw = nullptr;      ///< of round jaws
-    std::vector<EffectDecision> effects;        ///< of effect_table(), then those that no scene can request
+    const CushionModelInfo& model_of(Partner nose) const { return nose == Partner::kJaw ? *jaw : *cushion; }
+    std::vector<EffectDecision> effects;  ///< of effect_table(), then those that no scene can request
     std::bitset<kEffects> skipped;
     bool in_force(Effect effect) const { return !skipped[static_cast<std::size_t>(effect)]; }
     void skip(Effect effect) { skipped.set(static_cast<std::size_t>(effect)); }

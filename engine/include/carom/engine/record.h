@@ -102,6 +102,13 @@ constexpr auto names_of(Partner) {
     return std::array{"cloth", "ball", "cushion", "jaw", "pocket"};
 }
 
+/// Calls f with the list of the table's parts that Event::b indexes. @param partner  not kNone or kBall
+template <class F>
+auto with_parts(const Table& table, Partner partner, const F& f) {
+    if (partner == Partner::kJaw) return f(table.jaws);
+    return partner == Partner::kPocket ? f(table.pockets) : f(table.cushions);
+}
+
 /// The kind of change for the ball.
 enum class EventPhase : std::uint8_t {
     kStrike,      ///< the cue hits it
@@ -147,6 +154,12 @@ constexpr const EventKind& kind(EventType type) {
 }
 constexpr const char* name(EventType type) {
     return kind(type).name;
+}
+/// The first type of this kind of change with this partner.
+constexpr EventType event_type(EventPhase phase, Partner partner) {
+    for (const EventKind& of : kEventKinds)
+        if (of.phase == phase && of.partner == partner) return of.type;
+    return EventType::kCueStrike;
 }
 /// Whether two balls, or a cluster of balls, collide.
 constexpr bool balls_collide(EventType type) {

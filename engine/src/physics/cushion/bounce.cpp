@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "carom/engine/airborne.h"
-#include "physics/nose_reach.h"
+#include "physics/reach.h"
 
 namespace carom {
 

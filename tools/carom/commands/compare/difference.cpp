@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/console.h"
-#include "commands/compare/ball_way.h"
 
 namespace carom::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "commands/export/keys.h"
+#include "commands/export/gltf.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "base/console.h"
 

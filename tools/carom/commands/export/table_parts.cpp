@@ -1,12 +1,16 @@
-#include "commands/export/table_parts.h"
+// The table as indexed triangles, one list per material, for programs that do not know this renderer.
+#include "commands/export/gltf.h"
 
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "carom/render/mesh_cut.h"
 #include "page/table_shape.h"

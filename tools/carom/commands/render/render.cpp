@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/console.h"
-#include "base/frame_costs.h"
+#include "base/margin.h"
 #include "base/options.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"

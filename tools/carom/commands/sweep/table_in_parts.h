@@ -9,7 +9,6 @@
 #include <string>
 #include <string_view>
 
-#include "base/file_lock.h"
 #include "base/output_file.h"
 
 namespace carom::tools {

@@ -1,7 +1,14 @@
-// Format and version of record files, for the writer and the reader.
+// Format and version of record files, and the parts of a record that repeat its scene, as JSON.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
+#include "carom/engine/record.h"
+
 namespace carom {
+
+nlohmann::ordered_json table_json(const Table& table);
+nlohmann::ordered_json balls_json(const BallParams& balls);
 
 inline constexpr char kRecordFormat[] = "carom-record";
 /// The written version. It may gain keys, as long as a reader that ignores them still draws the same shot

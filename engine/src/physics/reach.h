@@ -1,4 +1,4 @@
-// The overlap at which two bodies still count as touching.
+// Distances at which a ball touches: a nose, or anything within rounding.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,16 @@
 #include "carom/engine/vec.h"
 
 namespace carom {
+
+/// [R] No ball farther away touches a nose: in the air, nose_reach() is up to sqrt(2) R.
+inline constexpr double kNoseReach = 1.5;
+
+/// [m] Distance of the centre from the line of a nose at this height, in the plane perpendicular to it. The
+/// nose is a cylinder about its line that a ball on the cloth touches at the horizontal distance R - inset.
+inline double nose_reach(double R, double height, double inset) {
+    const double level = R - inset, up = height - R;
+    return std::sqrt(level * level + up * up);
+}
 
 // [-] Fraction of the largest coordinate that rounding can explain as an overlap: far from the origin (1e5 m)
 // the rounding of a coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a difference cause
