@@ -188,7 +188,7 @@ test("many shots equal the single shots", () => {
   for (let i = 0; i < 3; ++i) {
     const shot = simulate(scene.with({"cue.speed": speeds[i], "cue.aim_deg": aims[i]}));
     assert.equal(batch.hash[i].toString(16).padStart(16, "0"), shot.hash);
-    assert.equal(batch.x[i * batch.balls], shot.outcome.balls[0].x);
+    assert.equal(batch.xy[2 * i * batch.balls], shot.outcome.balls[0].x);
   }
   assert.equal(carom.STATUSES[batch.status[3]], "invalid");
   assert.equal(batch.messages[0].shot, 3);

@@ -196,24 +196,8 @@ export interface Batch {
   ids: string[];
   /** Why a shot has no result. */
   messages: {shot: number; message: string}[];
-  /** One for each shot: an index into STATUSES. */
-  status: Uint8Array;
-  /** [s] */
-  duration: Float64Array;
-  events: BigInt64Array;
-  /** Index of a ball, or -1. */
-  firstHit: Int32Array;
-  contacts: Int32Array;
-  approachCushions: Int32Array;
-  /** The final position for each shot and ball, the balls of the first shot first [m]. */
-  x: Float64Array;
-  y: Float64Array;
-  /** Index of the pocket, -2 for a ball that has left the table, or -1. */
-  pocket: Int32Array;
-  fell: Int32Array;
-  cushions: Int32Array;
-  /** With `hash: true`. */
-  hash?: BigUint64Array;
+  // begin outcomes
+  // end outcomes
 }
 
 /** Simulates many shots of one scene, in which these numbers differ: {"cue.speed": [1, 2, 3]}. */

@@ -91,26 +91,16 @@ Json events_json(const Record& record) {
 }
 
 Json many_json(const Batch& batch) {
-    const auto at = [](const auto& list) { return reinterpret_cast<std::uintptr_t>(list.data()); };
-    Json messages = Json::array();
+    Json messages = Json::array(), arrays = Json::array();
     for (const Batch::Message& message : batch.messages)
         messages.push_back({{"shot", message.shot}, {"message", message.text}});
-    return {{"shots", batch.shots},
-            {"balls", batch.balls},
-            {"messages", messages},
-            {"arrays",
-             {{"status", at(batch.status)},
-              {"duration", at(batch.duration)},
-              {"events", at(batch.events)},
-              {"firstHit", at(batch.first_hit)},
-              {"contacts", at(batch.contacts)},
-              {"approachCushions", at(batch.approach_cushions)},
-              {"x", at(batch.x)},
-              {"y", at(batch.y)},
-              {"pocket", at(batch.pocket)},
-              {"fell", at(batch.fell)},
-              {"cushions", at(batch.cushions)},
-              {"hash", at(batch.hash)}}}};
+    for (const OutcomeColumn& column : kOutcomeColumns)
+        if (const void* const array = column.array(batch))
+            arrays.push_back({{"name", column.name},
+                              {"type", name(column.type)},
+                              {"at", reinterpret_cast<std::uintptr_t>(array)},
+                              {"count", batch.shots * column.each(batch.balls)}});
+    return {{"shots", batch.shots}, {"balls", batch.balls}, {"messages", messages}, {"arrays", arrays}};
 }
 
 }  // namespace

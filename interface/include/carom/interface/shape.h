@@ -97,8 +97,10 @@ T read_as(const Value& value, const char* name = nullptr) {
 std::span<const Shape* const> types();
 /// The reference page of the types.
 std::string types_page();
-/// The blocks of python/carom/_types.py, between "# begin NAME" and "# end NAME".
+/// Blocks of Python, between "# begin NAME" and "# end NAME": of python/carom/_types.py and _simulate.py.
 std::string types_for_python();
+/// The block of web/npm/index.d.ts, between "// begin outcomes" and "// end outcomes".
+std::string types_for_npm();
 
 namespace shapes {
 
