@@ -30,25 +30,15 @@ std::string fallen(const std::vector<BallStart>& balls, const std::int32_t* fell
     return text;
 }
 
-/// The name that a number stands for.
-std::string name_of(const OutcomeColumn& column, int number, const Scene& scene) {
-    if (column.unit == std::string_view("status")) return name(static_cast<ShotStatus>(number));
-    if (number == kOffTable) return "out";
-    if (number < 0) return "";
-    const auto index = static_cast<std::size_t>(number);
-    return column.unit == std::string_view("ball") ? scene.ball[index].id : scene.table.pockets[index].id;
-}
-
 std::vector<SweepColumn> columns_of(const Variation& variation, const std::vector<Measure>& measures) {
     using enum ValueKind;
     std::vector<SweepColumn> columns = {{"shot", kWhole, "", false, Of::kShot}};
     for (std::size_t k = 0; k < variation.keys().size(); ++k)
         columns.push_back({variation.keys()[k], variation.kind(k), variation.unit(k), false, Of::kKey, k});
     const auto add = [&columns](const OutcomeColumn& outcome, const std::string& name, std::size_t which) {
-        const bool has_unit = std::string_view(outcome.unit).size() <= 1;
-        const ValueKind kind = !has_unit ? kText : outcome.type == NumberType::kFloat64 ? kNumber : kWhole;
+        const ValueKind kind = kind_of(outcome);
         columns.push_back(
-            {name, kind, has_unit ? outcome.unit : "", name != "status", Of::kOutcome, which, &outcome});
+            {name, kind, kind == kText ? "" : outcome.unit, name != "status", Of::kOutcome, which, &outcome});
     };
     for (const OutcomeColumn& outcome : kOutcomeColumns)
         if (outcome.per_ball == 0 && !outcome.on_request) add(outcome, outcome.name, 0);
@@ -63,9 +53,12 @@ std::vector<SweepColumn> columns_of(const Variation& variation, const std::vecto
                     i * outcome.per_ball + k);
             }
     columns.push_back({"message", kText, "", false, Of::kMessage});
-    for (std::size_t m = 0; m < measures.size(); ++m)
-        columns.push_back(
-            {measures[m].text(), measures[m].is_number() ? kNumber : kText, "", true, Of::kMeasure, m});
+    for (std::size_t m = 0; m < measures.size(); ++m) {
+        const std::string& text = measures[m].text();
+        // A table has each name once.
+        std::erase_if(columns, [&text](const SweepColumn& column) { return column.name == text; });
+        columns.push_back({text, measures[m].is_number() ? kNumber : kText, "", true, Of::kMeasure, m});
+    }
     return columns;
 }
 
@@ -126,11 +119,9 @@ SweepValue Sweep::value(const SweepColumn& column, const SweptShots& shots, std:
             return std::get<double>(measured);
         }
     }
-    const double number =
-        column.outcome->number(out, shot * column.outcome->each(balls.size()) + column.which);
-    if (column.kind == ValueKind::kNumber) return number;
-    if (column.kind == ValueKind::kWhole) return static_cast<std::int64_t>(number);
-    return name_of(*column.outcome, static_cast<int>(number), variation_.base());
+    const std::size_t at = shot * column.outcome->each(balls.size()) + column.which;
+    return std::visit([](auto&& value) -> SweepValue { return value; },
+                      value_of(*column.outcome, out, at, variation_.base()));
 }
 
 }  // namespace carom::games

@@ -109,8 +109,10 @@ std::string in_words(const OutcomeColumn& column) {
                        column.per_ball == 0   ? ""
                        : column.per_ball == 1 ? ", b"
                                               : fmt::format(", b, {}", column.per_ball),
-                       *column.unit != '\0' ? fmt::format("[{}] ", column.unit) : "", column.meaning,
-                       column.on_request ? ", on request" : "");
+                       kind_of(column) == ValueKind::kText ? fmt::format("index of the {} ", column.unit)
+                       : *column.unit != '\0'              ? fmt::format("[{}] ", column.unit)
+                                                           : "",
+                       column.meaning, column.on_request ? ", on request" : "");
 }
 
 }  // namespace
@@ -118,7 +120,8 @@ std::string in_words(const OutcomeColumn& column) {
 std::string types_page() {
     std::string text =
         "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), JavaScript, and Python's "
-        "`carom.games`. Missing keys have defaults.\n";
+        "`carom` "
+        "and `carom.games`. Missing keys have defaults.\n";
     for (const Shape* type : types()) {
         // For the interactive page; people read `carom describe games`.
         if (type == &shape_of<games::GameInfo>() || type == &shape_of<games::RuleOption>()) continue;
@@ -141,15 +144,22 @@ std::string types_page() {
 }
 
 std::string types_for_npm() {
-    std::string text = "  // begin outcomes\n";
+    std::string many, shot, ball;
     for (const OutcomeColumn& column : kOutcomeColumns) {
-        std::string type = name(column.type);
-        type.front() = static_cast<char>(std::toupper(type.front()));
-        if (type.ends_with("64") && type != "Float64") type = "Big" + type;
-        text += wrapped(fmt::format("  /** {} */", in_words(column)), " ", "   * ") +
-                fmt::format("  {}{}: {}Array;\n", column.name, column.on_request ? "?" : "", type);
+        std::string array = name(column.type);
+        array.front() = static_cast<char>(std::toupper(array.front()));
+        if (array.starts_with("Int64") || array.starts_with("Uint64")) array = "Big" + array;
+        many += wrapped(fmt::format("  /** {} */", in_words(column)), " ", "   * ") +
+                fmt::format("  {}{}: {}Array;\n", column.name, column.on_request ? "?" : "", array);
+        if (!column.on_request && column.per_ball < 2)
+            (column.per_ball == 0 ? shot : ball) +=
+                fmt::format("{}{}: {};\n", column.per_ball == 0 ? "  " : "    ", column.name,
+                            kind_of(column) == ValueKind::kText ? "string" : "number");
     }
-    return text + "  // end outcomes\n";
+    return fmt::format(
+        "  // begin outcomes\n{}  // end outcomes\n  // begin outcome\n{}  // end outcome\n    // begin "
+        "ball_outcome\n{}    // end ball_outcome\n",
+        many, shot, ball);
 }
 
 std::string types_for_python() {

@@ -96,6 +96,29 @@ class Shots(NamedTuple):
     """
 
     # begin outcomes
+    #: (n) index of the status at the end
+    status: NDArray[np.uint8]
+    #: (n) [s] until its end
+    duration: NDArray[np.float64]
+    #: (n) in its record
+    events: NDArray[np.int64]
+    #: (n) index of the ball that the struck ball hits first, or -1
+    first_hit: NDArray[np.int32]
+    #: (n) balls that it hits
+    contacts: NDArray[np.int32]
+    #: (n) cushions that it hits before its second ball, or in all; one that it touches at the start counts
+    #: after it has left it
+    approach_cushions: NDArray[np.int32]
+    #: (n, b, 2) [m] at the end; of a pocketed ball, its pocket; NaN if it was left out
+    xy: NDArray[np.float64]
+    #: (n, b) index of the pocket that holds it; -1: none; -2: it has left the table
+    pocket: NDArray[np.int32]
+    #: (n, b) 0 for the first ball that falls, 1 for the next, ..., or -1
+    fell: NDArray[np.int32]
+    #: (n, b) how often it hits a cushion or a jaw
+    cushions: NDArray[np.int32]
+    #: (n) of the record, on request
+    hash: NDArray[np.uint64] | None
     # end outcomes
 
     messages: dict[int, str]  # by shot: why it has no result
@@ -142,18 +165,20 @@ class Shots(NamedTuple):
                    if each == 0 and getattr(self, name) is not None}
         for ball, id in enumerate(ids):
             for name, _, each, unit, _ in _COLUMNS:
-                for k, part in enumerate(name if each > 1 else [name] * each):
-                    columns[f"{id}.{part}"] = column(getattr(self, name).reshape(n, balls, each)[:, ball, k], unit)
+                for k, part in enumerate(name if each > 1 else [name] * each):  # "x" and "y" of "xy"
+                    values = getattr(self, name).reshape(n, balls, each)[:, ball, k]
+                    columns[f"{id}.{part}"] = column(values, unit)
         return columns | {"message": [self.messages.get(shot, "") for shot in range(n)]}
 
     def __repr__(self) -> str:
         n, balls = self.pocket.shape
         counts = zip(_STATUS, np.bincount(self.status, minlength=len(_STATUS)).tolist())
         ended = ", ".join(f"{count} {name}" for name, count in counts if count > 0)
+        units = {"paths": " [m]"} | {name: f" [{unit}]" for name, _, _, unit, _ in _COLUMNS if unit in ("s", "m")}
         shapes: dict[tuple[int, ...], list[str]] = {}
         for name, array in self._asdict().items():
             if isinstance(array, np.ndarray):
-                shapes.setdefault(array.shape, []).append(name)
+                shapes.setdefault(array.shape, []).append(name + units.get(name, ""))
         arrays = ",\n".join(f" {', '.join(names)} {shape}" for shape, names in shapes.items())
         return f"<carom.Shots: {n} shots of {balls} balls: {ended or 'none'};\n{arrays}>"
 

@@ -20,16 +20,17 @@
 
 namespace carom::python {
 
-/// The caller's contiguous arrays in the order of kOutcomeColumns, which _simulate.py makes and checks; none
+/// The caller's contiguous arrays in the order of kOutcomeColumns, which _simulate.py makes and checks; None
 /// for one that is not wanted.
-using ShotArrays = std::vector<std::optional<nb::ndarray<nb::c_contig, nb::device::cpu>>>;
+using ShotArrays = std::vector<nb::object>;
 
 inline BatchArrays batch_arrays(const ShotArrays& arrays) {
     if (arrays.size() != std::size(kOutcomeColumns))
         throw nb::value_error("expected an array for each column");
     BatchArrays out;
     for (std::size_t i = 0; i < arrays.size(); ++i)
-        if (arrays[i]) kOutcomeColumns[i].set_array(out, arrays[i]->data());
+        if (!arrays[i].is_none())
+            kOutcomeColumns[i].set_array(out, nb::cast<nb::ndarray<nb::c_contig>>(arrays[i], false).data());
     return out;
 }
 

@@ -17,6 +17,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/verify.h"
 #include "carom/games/measures.h"
+#include "carom/interface/shape.h"
 #include "page/event_sentence.h"
 #include "web.h"
 
@@ -30,30 +31,6 @@ constexpr kernel::Isa kIsa = kernel::Isa::kScalar;
 /// JSON has no NaN: null.
 Json number(double x) {
     return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
-
-Json outcome_json(const Record& record, const Outcome& outcome) {
-    const auto ball_id = [&](int ball) {
-        return ball < 0 ? Json(nullptr) : Json(record.tracks[static_cast<std::size_t>(ball)].id);
-    };
-    Json balls = Json::array();
-    for (std::size_t i = 0; i < outcome.balls.size(); ++i) {
-        const BallOutcome& ball = outcome.balls[i];
-        const bool held = ball.pocket >= 0;
-        balls.push_back(
-            {{"id", record.tracks[i].id},
-             {"x", ball.position.x()},
-             {"y", ball.position.y()},
-             {"pocket", held ? Json(record.table.pockets[static_cast<std::size_t>(ball.pocket)].id) : Json()},
-             {"offTable", ball.pocket == kOffTable},
-             {"fell", ball.fell},
-             {"cushions", ball.cushions}});
-    }
-    return {{"stopped", words(outcome.stopped).word},
-            {"firstHit", ball_id(outcome.first_hit)},
-            {"contacts", outcome.contacts},
-            {"approachCushions", outcome.approach_cushions},
-            {"balls", balls}};
 }
 
 Json events_json(const Record& record) {
@@ -143,7 +120,8 @@ CAROM_WEB int carom_shot_hash(const WebShot* shot) {
     return guarded([&] { give(nullptr, shot->record.hash()); });
 }
 CAROM_WEB int carom_shot_outcome(const WebShot* shot) {
-    return guarded([&] { give(nullptr, dumped(outcome_json(shot->record, shot->outcome))); });
+    return guarded(
+        [&] { give(nullptr, dumped(interface::value_of(shot->outcome, shot->record, shot->scene))); });
 }
 CAROM_WEB void carom_free_shot(WebShot* shot) {
     delete shot;

@@ -11,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -227,6 +228,24 @@ Batch::Batch(std::size_t n, std::size_t b, bool hash_wanted) : shots(n), balls(b
         memory.push_back(std::make_unique<std::byte[]>(n * column.each(b) * column.size));
         column.set_array(*this, memory.back().get());
     }
+}
+
+ValueKind kind_of(const OutcomeColumn& column) {
+    if (std::string_view(column.unit).size() > 1) return ValueKind::kText;
+    return column.type == NumberType::kFloat64 ? ValueKind::kNumber : ValueKind::kWhole;
+}
+
+OutcomeValue value_of(const OutcomeColumn& column, const BatchArrays& of, std::size_t at,
+                      const Scene& scene) {
+    const double number = column.number(of, at);
+    const ValueKind kind = kind_of(column);
+    if (kind == ValueKind::kNumber) return number;
+    if (kind == ValueKind::kWhole) return static_cast<std::int64_t>(number);
+    if (column.unit == std::string_view("status")) return name(static_cast<ShotStatus>(number));
+    if (number == kOffTable) return "out";
+    if (number < 0) return "";
+    const auto index = static_cast<std::size_t>(number);
+    return column.unit == std::string_view("ball") ? scene.ball[index].id : scene.table.pockets[index].id;
 }
 
 void check_shots(std::size_t shots) {

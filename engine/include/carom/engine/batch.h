@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "carom/engine/plan.h"
@@ -177,7 +178,7 @@ constexpr OutcomeColumn outcome_column(const char* name, const char* unit, const
 
 /// A shot without a result has the numbers of Outcome() and BallOutcome().
 inline constexpr OutcomeColumn kOutcomeColumns[] = {
-    outcome_column<&BatchArrays::status, &Outcome::stopped>("status", "status", "how it ended"),
+    outcome_column<&BatchArrays::status, &Outcome::stopped>("status", "status", "at the end"),
     outcome_column<&BatchArrays::duration, &Outcome::duration>("duration", "s", "until its end"),
     outcome_column<&BatchArrays::events, &Outcome::events>("events", "", "in its record"),
     outcome_column<&BatchArrays::first_hit, &Outcome::first_hit>("first_hit", "ball",
@@ -197,6 +198,12 @@ inline constexpr OutcomeColumn kOutcomeColumns[] = {
                                                                    "how often it hits a cushion or a jaw"),
     outcome_column<&BatchArrays::hash, &Outcome::hash>("hash", "", "of the record", true),
 };
+
+using OutcomeValue = std::variant<double, std::int64_t, std::string>;
+/// kText: the values are names, of a status, a ball or a pocket.
+ValueKind kind_of(const OutcomeColumn& column);
+/// A number of a column, or its name: "out" is the pocket of a ball off the table, "" no ball or no pocket.
+OutcomeValue value_of(const OutcomeColumn& column, const BatchArrays& of, std::size_t at, const Scene& scene);
 
 class BatchStopped : public std::runtime_error {
   public:
