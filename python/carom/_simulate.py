@@ -174,7 +174,8 @@ class Shots(NamedTuple):
         n, balls = self.pocket.shape
         counts = zip(_STATUS, np.bincount(self.status, minlength=len(_STATUS)).tolist())
         ended = ", ".join(f"{count} {name}" for name, count in counts if count > 0)
-        units = {"paths": " [m]"} | {name: f" [{unit}]" for name, _, _, unit, _ in _COLUMNS if unit in ("s", "m")}
+        units = {name: f" [{unit}]" for name, _, _, unit, _ in _COLUMNS if unit in ("s", "m")}
+        units["paths"] = " [m]"
         shapes: dict[tuple[int, ...], list[str]] = {}
         for name, array in self._asdict().items():
             if isinstance(array, np.ndarray):
