@@ -1,10 +1,12 @@
 // The types of the interface as a reference page and as Python classes.
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "carom/engine/batch.h"
 #include "carom/games/rules.h"
 #include "carom/interface/shape.h"
 
@@ -101,12 +103,25 @@ std::string wrapped(std::string text, const std::string& between, const std::str
     return lines + text + "\n";
 }
 
+/// An outcome of n shots of b balls: "(n, b) [s] its meaning".
+std::string in_words(const OutcomeColumn& column) {
+    return fmt::format("(n{}) {}{}{}",
+                       column.per_ball == 0   ? ""
+                       : column.per_ball == 1 ? ", b"
+                                              : fmt::format(", b, {}", column.per_ball),
+                       kind_of(column) == ValueKind::kText ? fmt::format("index of the {} ", column.unit)
+                       : *column.unit != '\0'              ? fmt::format("[{}] ", column.unit)
+                                                           : "",
+                       column.meaning, column.on_request ? ", on request" : "");
+}
+
 }  // namespace
 
 std::string types_page() {
     std::string text =
         "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), JavaScript, and Python's "
-        "`carom.games`. Missing keys have defaults.\n";
+        "`carom` "
+        "and `carom.games`. Missing keys have defaults.\n";
     for (const Shape* type : types()) {
         // For the interactive page; people read `carom describe games`.
         if (type == &shape_of<games::GameInfo>() || type == &shape_of<games::RuleOption>()) continue;
@@ -116,7 +131,35 @@ std::string types_page() {
             text +=
                 fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.limits), row.meaning);
     }
+    text +=
+        "\n## Outcomes\n\nOf n shots of b balls: arrays in C (`carom_batch_column`), Python (`Shots`) and "
+        "JavaScript "
+        "(`Batch`), balls in the order of the scene. In sweeps and data frames each ball has columns `ID.x`, "
+        "`ID.y`, `ID.pocket`, ..., and numbers that stand for a status, a ball or a pocket are names. "
+        "Without a "
+        "result, `duration` and `xy` are NaN.\n\n| name | type | meaning |\n|---|---|---|\n";
+    for (const OutcomeColumn& column : kOutcomeColumns)
+        text += fmt::format("| `{}` | {} | {} |\n", column.name, name(column.type), in_words(column));
     return text;
+}
+
+std::string types_for_npm() {
+    std::string many, shot, ball;
+    for (const OutcomeColumn& column : kOutcomeColumns) {
+        std::string array = name(column.type);
+        array.front() = static_cast<char>(std::toupper(array.front()));
+        if (array.starts_with("Int64") || array.starts_with("Uint64")) array = "Big" + array;
+        many += wrapped(fmt::format("  /** {} */", in_words(column)), " ", "   * ") +
+                fmt::format("  {}{}: {}Array;\n", column.name, column.on_request ? "?" : "", array);
+        if (!column.on_request && column.per_ball < 2)
+            (column.per_ball == 0 ? shot : ball) +=
+                fmt::format("{}{}: {};\n", column.per_ball == 0 ? "  " : "    ", column.name,
+                            kind_of(column) == ValueKind::kText ? "string" : "number");
+    }
+    return fmt::format(
+        "  // begin outcomes\n{}  // end outcomes\n  // begin outcome\n{}  // end outcome\n    // begin "
+        "ball_outcome\n{}    // end ball_outcome\n",
+        many, shot, ball);
 }
 
 std::string types_for_python() {
@@ -139,7 +182,12 @@ std::string types_for_python() {
         }
         text += fmt::format("# end {}\n", type->name);
     }
-    return text;
+    text += "    # begin outcomes\n";
+    for (const OutcomeColumn& column : kOutcomeColumns)
+        text += wrapped(fmt::format("    #: {}", in_words(column)), " ", "    #: ") +
+                fmt::format("    {}: NDArray[np.{}]{}\n", column.name, name(column.type),
+                            column.on_request ? " | None" : "");
+    return text + "    # end outcomes\n";
 }
 
 }  // namespace carom::interface

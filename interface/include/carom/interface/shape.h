@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "carom/engine/row.h"
+#include "carom/engine/simulate.h"
 
 namespace carom::interface {
 
@@ -93,12 +94,17 @@ T read_as(const Value& value, const char* name = nullptr) {
     return out;
 }
 
+/// A shot of a scene: its outcomes by name, and the state of each ball at the end.
+Value value_of(const Outcome& outcome, const Record& record, const Scene& scene);
+
 /// The described types, each after those that it contains.
 std::span<const Shape* const> types();
 /// The reference page of the types.
 std::string types_page();
-/// The blocks of python/carom/_types.py, between "# begin NAME" and "# end NAME".
+/// Blocks of Python, between "# begin NAME" and "# end NAME": of python/carom/_types.py and _simulate.py.
 std::string types_for_python();
+/// The same of TypeScript, with "//": of web/npm/index.d.ts.
+std::string types_for_npm();
 
 namespace shapes {
 
