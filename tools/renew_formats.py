@@ -17,8 +17,7 @@ PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/relea
 PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json",
          "record-schema": "record.schema.json", "scene-format": "scene_format.md", "types": "types.md"}
 TYPES = ROOT / "python/carom/_types.py"
-
-
+MARKED = re.compile(r"(?ms)^ *(#|//) begin (\w+)\n.*?^ *\1 end \2\n")
 
 def printed_by(what):
     return subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
@@ -35,9 +34,9 @@ for what, name in PAGES.items():
             f"renew_formats: {path.relative_to(ROOT)} is newer than {PROGRAM}; build carom_program first")
     path.write_text(printed)
 
-# Between the marks; the methods of the classes follow them.
-text = TYPES.read_text()
-for block in re.finditer(r"(?ms)^# begin (\w+)\n.*?^# end \1\n", printed_by("types-python")):
-    present = re.search(rf"(?ms)^# begin {block[1]}\n.*?^# end {block[1]}\n", text)
-    text = text.replace(present[0], block[0]) if present else f"{text}\n\n{block[0]}"
-TYPES.write_text(text)
+# Between the marks; the methods of a class follow them. A new class is appended.
+for what, *paths in (("types-python", TYPES), ("types-typescript", ROOT / "web/npm/index.d.ts")):
+    fresh = {block[2]: block[0] for block in MARKED.finditer(printed_by(what))}
+    for path in paths:
+        path.write_text(MARKED.sub(lambda old: fresh.pop(old[2], old[0]), path.read_text()))
+    TYPES.write_text(TYPES.read_text() + "".join(f"\n\n{block}" for block in fresh.values()))

@@ -1,6 +1,7 @@
-// The types of the interface as a reference page and as Python classes.
+// The types of the interface as a reference page, Python classes and TypeScript interfaces.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -13,13 +14,12 @@ namespace {
 
 using Kind = Shape::Kind;
 
-std::string quoted_names(const Shape& choice) {
-    return fmt::format("\"{}\"", fmt::join(choice.names, "\", \""));
+std::string quoted_names(const Shape& choice, const char* between = ", ") {
+    return fmt::format("\"{}\"", fmt::join(choice.names, fmt::format("\"{}\"", between)));
 }
 
 /// A type in words: "2: 0 to 9".
-std::string in_words(const Shape& shape, const Shape::Limits& limits) {
-    const Whole& range = limits.range;
+std::string in_words(const Shape& shape, Whole range) {
     switch (shape.kind) {
         case Kind::kTruth:
             return "truth";
@@ -27,18 +27,18 @@ std::string in_words(const Shape& shape, const Shape::Limits& limits) {
             return range.least == range.most ? "whole number"
                                              : fmt::format("{} to {}", range.least, range.most);
         case Kind::kNumber:
-            return limits.may_be_nan ? "number or null" : "number";
+            return "number";
         case Kind::kText:
             return "text";
         case Kind::kChoice:
             if (&shape == &shape_of<games::Game>()) return "game";
             return quoted_names(shape);
         case Kind::kList:
-            return "list: " + in_words(shape.item(), limits);
+            return "list: " + in_words(shape.item(), range);
         case Kind::kArray:
-            return fmt::format("{}: {}", shape.count, in_words(shape.item(), limits));
+            return fmt::format("{}: {}", shape.count, in_words(shape.item(), range));
         case Kind::kOptional:
-            return in_words(shape.item(), limits) + " or null";
+            return in_words(shape.item(), range) + " or null";
         case Kind::kType:
             break;
     }
@@ -76,6 +76,31 @@ std::string in_python(const Shape& shape, bool fixed) {
     return fmt::format("tuple[{}]", fmt::join(items, ", "));
 }
 
+/// A type in TypeScript.
+std::string in_typescript(const Shape& shape) {
+    switch (shape.kind) {
+        case Kind::kTruth:
+            return "boolean";
+        case Kind::kWhole:
+        case Kind::kNumber:
+            return "number";
+        case Kind::kText:
+            return "string";
+        case Kind::kChoice:
+            return &shape == &shape_of<games::Game>() ? "Game" : quoted_names(shape, " | ");
+        case Kind::kList:
+            return in_typescript(shape.item()) + "[]";
+        case Kind::kOptional:
+            return in_typescript(shape.item()) + " | null";
+        case Kind::kType:
+            return shape.name;
+        case Kind::kArray:
+            break;
+    }
+    const std::vector<std::string> items(shape.count, in_typescript(shape.item()));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
 std::string python_default(const Value& value) {
     if (value.is_null()) return "None";
     if (value.is_boolean()) return value.get<bool>() ? "True" : "False";
@@ -105,16 +130,15 @@ std::string wrapped(std::string text, const std::string& between, const std::str
 
 std::string types_page() {
     std::string text =
-        "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), JavaScript, and Python's "
-        "`carom.games`. Missing keys have defaults.\n";
+        "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), C (`carom_value`), "
+        "JavaScript, and "
+        "Python's `carom.games`. Missing keys have defaults.\n";
     for (const Shape* type : types()) {
-        // For the interactive page; people read `carom describe games`.
-        if (type == &shape_of<games::GameInfo>() || type == &shape_of<games::RuleOption>()) continue;
         text += fmt::format("\n## {}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", type->name,
                             type->meaning);
         for (const Shape::Member& row : type->rows)
             text +=
-                fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.limits), row.meaning);
+                fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.range), row.meaning);
     }
     return text;
 }
@@ -127,19 +151,38 @@ std::string types_for_python() {
     for (const Shape* type : types()) {
         text += fmt::format("\n\n# begin {0}\nclass {0}(NamedTuple):\n", type->name) +
                 wrapped(fmt::format("    \"\"\"{}\"\"\"", type->meaning), " ", "    ") + "\n";
+        // Texts and computed members at the end have defaults: a caller need not give them.
+        const auto required = std::find_if(type->rows.rbegin(), type->rows.rend(), [](const auto& row) {
+            return !row.is_computed() && row.shape().kind != Kind::kText;
+        });
         for (const Shape::Member& row : type->rows) {
             std::string member =
                 fmt::format("    {}: {}", row.key, in_python(row.shape(), type->is_made_by_callers));
             if (type->is_made_by_callers && !row.is_needed)
                 member += " = " + python_default(type->default_value().at(row.key));
-            // A caller who makes such a value need not compute them.
-            if (row.computed != nullptr) member += row.shape().kind == Kind::kTruth ? " = False" : " = \"\"";
+            else if (!type->is_made_by_callers && &row > &*required)
+                member += row.shape().kind == Kind::kTruth ? " = False" : " = \"\"";
             text += wrapped(fmt::format("    #: {}", row.meaning), " ", "    #: ") +
                     wrapped(member, ", ", "        ");
         }
         text += fmt::format("# end {}\n", type->name);
     }
     return text;
+}
+
+std::string types_for_typescript() {
+    std::string text =
+        "// begin types\n" +
+        wrapped("export type Game = " + quoted_names(shape_of<games::Game>(), " | ") + ";", " | ", "  ");
+    for (const Shape* type : types()) {
+        text += "\n" + wrapped(fmt::format("/** {} */", type->meaning), " ", " * ") +
+                fmt::format("export interface {} {{\n", type->name);
+        for (const Shape::Member& row : type->rows)
+            text += wrapped(fmt::format("  /** {} */", row.meaning), " ", "   * ") +
+                    wrapped(fmt::format("  {}: {};", row.key, in_typescript(row.shape())), " | ", "    ");
+        text += "}\n";
+    }
+    return text + "// end types\n";
 }
 
 }  // namespace carom::interface

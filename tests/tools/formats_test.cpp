@@ -48,6 +48,8 @@ TEST(Formats, TheTypesOfTheInterfaceMatchTheirRows) {
     const std::regex block("# begin (\\w+)\n[^]*?# end \\1\n");
     for (std::sregex_iterator it(printed.begin(), printed.end(), block), end; it != end; ++it)
         EXPECT_NE(classes.find(it->str()), classes.npos) << "python/carom/_types.py: " << (*it)[1] << kStale;
+    EXPECT_NE(test::read_source("web/npm/index.d.ts").find(interface::types_for_typescript()), classes.npos)
+        << "web/npm/index.d.ts" << kStale;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Types of the interface: how each is written, read and described. There is one Shape for each C++ type that
-// rows use (carom/engine/row.h). The program, carom.wasm, Python and the reference page work from it.
+// rows use (carom/engine/row.h), and for sections of scene files, whose fields are their rows. The program,
+// carom.wasm, Python, C and the reference page work from it.
 #pragma once
 
 #include <array>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "carom/engine/row.h"
+#include "carom/engine/scene.h"
 
 namespace carom::interface {
 
@@ -47,23 +49,21 @@ struct Shape {
         kOptional,
         kType
     };
-    /// The limits of a row, for the values inside it.
-    struct Limits {
-        Whole range{};
-        bool may_be_nan = false;
-    };
     struct Member {
-        const char *key, *meaning;
-        Limits limits;
+        const char* key;
+        std::string meaning;
+        Whole range;  ///< of each number inside it
         bool is_needed;
         const Shape& (*shape)();
-        void* (*in)(void* object);              ///< null: computed
-        Value (*computed)(const void* object);  ///< or null
+        void* (*in)(void* object);                                        ///< null: it has the next two
+        Value (*get)(const void* object);                                 ///< or null
+        void (*set)(void* object, const Value& value, const Part& part);  ///< or null: computed
+        bool is_computed() const { return in == nullptr && set == nullptr; }
     };
 
     Kind kind;
     Value (*write)(const Shape& shape, const void* from);
-    void (*read)(const Shape& shape, const Value& value, const Part& part, const Limits& limits, void* to);
+    void (*read)(const Shape& shape, const Value& value, const Part& part, Whole range, void* to);
     const char *name = "", *meaning = "";      ///< of a described type
     bool is_made_by_callers = false;           ///< the same
     Value (*default_value)() = nullptr;        ///< the same
@@ -93,12 +93,52 @@ T read_as(const Value& value, const char* name = nullptr) {
     return out;
 }
 
+/// The state before the first shot. @param options  keys of a state that are not defaults
+/// @throws std::invalid_argument
+Value new_state(const std::string& game, const Value& options);
+
 /// The described types, each after those that it contains.
 std::span<const Shape* const> types();
 /// The reference page of the types.
 std::string types_page();
 /// The blocks of python/carom/_types.py, between "# begin NAME" and "# end NAME".
 std::string types_for_python();
+/// The block "types" of web/npm/index.d.ts.
+std::string types_for_typescript();
+
+/// A section of scene files, as an object with its keys.
+template <class T, std::size_t kCount>
+struct Section {
+    const char *name, *meaning;
+    const Field<T> (&fields)[kCount];
+};
+template <class T, std::size_t kCount>
+constexpr Section<T, kCount> section(const char* name, const Field<T> (&fields)[kCount],
+                                     const char* meaning = "") {
+    return {name, meaning, fields};
+}
+constexpr auto section_of(const Cue*) {
+    return section("Cue", kCueFields, "A strike: [cue] of a scene file.");
+}
+constexpr auto section_of(const BallStart*) {
+    return section("Ball", kBallStartFields);
+}
+constexpr auto section_of(const Table*) {
+    return section("Table", kTableFields);
+}
+constexpr auto section_of(const Cushion*) {
+    return section("Cushion", kCushionFields);
+}
+constexpr auto section_of(const Jaw*) {
+    return section("Jaw", kJawFields);
+}
+constexpr auto section_of(const Pocket*) {
+    return section("Pocket", kPocketFields);
+}
+template <class T>
+concept HasSection = requires(const T* t) {
+    section_of(t).fields;
+};
 
 namespace shapes {
 
@@ -106,15 +146,20 @@ namespace shapes {
 /// The expected items of a list: "whole numbers".
 const char* plural_of(const Shape& shape);
 Value write_rows(const Shape& shape, const void* from);
-void read_rows(const Shape& shape, const Value& value, const Part& part, const Shape::Limits& limits,
-               void* to);
+void read_rows(const Shape& shape, const Value& value, const Part& part, Whole range, void* to);
 std::size_t choice_of(const Shape& shape, const Value& value, const Part& part);
 /// @param most, least  of the C++ type
 std::int64_t whole_of(const Value& value, const Part& part, Whole range, std::int64_t least,
                       std::int64_t most);
 bool truth_of(const Value& value, const Part& part);
-double number_of(const Value& value, const Part& part, bool may_be_nan);
+double number_of(const Value& value, const Part& part);
 std::string text_of(const Value& value, const Part& part);
+/// With its unit.
+std::string meaning_of(const Key& key);
+Value value_of_field(const FieldValue& field);
+FieldValue field_of(const Key& key, const Value& value, const Part& part);
+/// Whose function is Shape::Member::shape of a field.
+const Shape& (*shape_of_field(const Key& key))();
 
 template <class T>
 constexpr bool kIsArray = requires(const T& v) {
@@ -192,13 +237,14 @@ Shape make_shape() {
     each_row<T>([&]<auto kMember>(const Row<kMember>& row) {
         Shape::Member member{.key = row.key,
                              .meaning = row.meaning,
-                             .limits = {row.range, row.may_be_nan},
+                             .range = row.range,
                              .is_needed = row.is_needed,
                              .shape = shape_of<MemberOf<T, kMember>>,
                              .in = nullptr,
-                             .computed = nullptr};
+                             .get = nullptr,
+                             .set = nullptr};
         if constexpr (kIsComputed<kMember>)
-            member.computed = [](const void* object) { return value_of((at<T>(object).*kMember)()); };
+            member.get = [](const void* object) { return value_of((at<T>(object).*kMember)()); };
         else
             member.in = [](void* object) -> void* { return &(at<T>(object).*kMember); };
         shape.rows.push_back(member);
@@ -208,19 +254,47 @@ Shape make_shape() {
     return shape;
 }
 
+template <HasSection T>
+Shape make_shape() {
+    static constexpr auto kSection = section_of(static_cast<const T*>(nullptr));
+    Shape shape{.kind = Shape::Kind::kType,
+                .write = write_rows,
+                .read = read_rows,
+                .name = kSection.name,
+                .meaning = kSection.meaning};
+    [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+        (shape.rows.push_back(
+             {.key = kSection.fields[kIndex].key,
+              .meaning = meaning_of(kSection.fields[kIndex]),
+              .range = {},
+              .is_needed = false,
+              .shape = shape_of_field(kSection.fields[kIndex]),
+              .in = nullptr,
+              .get =
+                  [](const void* from) { return value_of_field(kSection.fields[kIndex].value(at<T>(from))); },
+              .set =
+                  [](void* to, const Value& value, const Part& part) {
+                      const auto& field = kSection.fields[kIndex];
+                      field.set(at<T>(to), field_of(field, value, part));
+                  }}),
+         ...);
+    }
+    (std::make_index_sequence<std::size(kSection.fields)>());
+    return shape;
+}
+
 template <class T>
 requires kIsChoice<T> Shape make_shape() {
-    Shape shape{
-        .kind = Shape::Kind::kChoice,
-        .write = [](const Shape&, const void* from) -> Value { return name(at<T>(from)); },
-        .read =
-            [](const Shape& of, const Value& value, const Part& part, const Shape::Limits&, void* to) {
-                const std::size_t index = choice_of(of, value, part);
-                if constexpr (std::is_enum_v<T>)
-                    at<T>(to) = static_cast<T>(index);
-                else
-                    at<T>(to) = all_of(T{})[index];
-            }};
+    Shape shape{.kind = Shape::Kind::kChoice,
+                .write = [](const Shape&, const void* from) -> Value { return name(at<T>(from)); },
+                .read =
+                    [](const Shape& of, const Value& value, const Part& part, Whole, void* to) {
+                        const std::size_t index = choice_of(of, value, part);
+                        if constexpr (std::is_enum_v<T>)
+                            at<T>(to) = static_cast<T>(index);
+                        else
+                            at<T>(to) = all_of(T{})[index];
+                    }};
     if constexpr (std::is_enum_v<T>)
         for (const char* each : names_of(T{})) shape.names.push_back(each);
     else
@@ -230,41 +304,40 @@ requires kIsChoice<T> Shape make_shape() {
 
 template <class T>
 requires kIsOptional<T> Shape make_shape() {
-    return {
-        .kind = Shape::Kind::kOptional,
-        .write = [](const Shape&, const void* from) -> Value {
-            return at<T>(from) ? value_of(*at<T>(from)) : Value();
-        },
-        .read =
-            [](const Shape& of, const Value& value, const Part& part, const Shape::Limits& limits, void* to) {
-                at<T>(to).reset();
-                if (!value.is_null()) of.item().read(of.item(), value, part, limits, &at<T>(to).emplace());
+    return {.kind = Shape::Kind::kOptional,
+            .write = [](const Shape&, const void* from) -> Value {
+                return at<T>(from) ? value_of(*at<T>(from)) : Value();
             },
-        .item = shape_of<typename T::value_type>};
+            .read =
+                [](const Shape& of, const Value& value, const Part& part, Whole range, void* to) {
+                    at<T>(to).reset();
+                    if (!value.is_null()) of.item().read(of.item(), value, part, range, &at<T>(to).emplace());
+                },
+            .item = shape_of<typename T::value_type>};
 }
 
 template <class T>
 requires(kIsList<T> || kIsArray<T>) Shape make_shape() {
     using Item = std::remove_cvref_t<decltype(std::declval<T&>()[0])>;
-    Shape shape{
-        .kind = kIsList<T> ? Shape::Kind::kList : Shape::Kind::kArray,
-        .write = [](const Shape&, const void* from) -> Value {
-            Value list = Value::array();
-            for (const auto& each : at<T>(from)) list.push_back(value_of<Item>(each));
-            return list;
-        },
-        .read =
-            [](const Shape& of, const Value& value, const Part& part, const Shape::Limits& limits, void* to) {
-                T& list = at<T>(to);
-                const bool fits = value.is_array() && (kIsList<T> || value.size() == of.count);
-                if (!fits)
-                    refuse(part, "expected a list of " + (kIsList<T> ? "" : std::to_string(of.count) + " ") +
-                                     plural_of(of.item()));
-                if constexpr (kIsList<T>) list.resize(value.size());
-                for (std::size_t i = 0; i < value.size(); ++i)
-                    of.item().read(of.item(), value[i], {&part, nullptr, i}, limits, &list[i]);
-            },
-        .item = shape_of<Item>};
+    Shape shape{.kind = kIsList<T> ? Shape::Kind::kList : Shape::Kind::kArray,
+                .write = [](const Shape&, const void* from) -> Value {
+                    Value list = Value::array();
+                    for (const auto& each : at<T>(from)) list.push_back(value_of<Item>(each));
+                    return list;
+                },
+                .read =
+                    [](const Shape& of, const Value& value, const Part& part, Whole range, void* to) {
+                        T& list = at<T>(to);
+                        const bool fits = value.is_array() && (kIsList<T> || value.size() == of.count);
+                        if (!fits)
+                            refuse(part, "expected a list of " +
+                                             (kIsList<T> ? "" : std::to_string(of.count) + " ") +
+                                             plural_of(of.item()));
+                        if constexpr (kIsList<T>) list.resize(value.size());
+                        for (std::size_t i = 0; i < value.size(); ++i)
+                            of.item().read(of.item(), value[i], {&part, nullptr, i}, range, &list[i]);
+                    },
+                .item = shape_of<Item>};
     if constexpr (kIsArray<T>) shape.count = static_cast<std::size_t>(T{}.size());
     return shape;
 }
@@ -279,22 +352,20 @@ Shape make_shape() {
                            : std::is_integral_v<T>       ? Kind::kWhole
                            : std::is_floating_point_v<T> ? Kind::kNumber
                                                          : Kind::kText;
-    return {
-        .kind = kKind,
-        .write = [](const Shape&, const void* from) -> Value { return at<T>(from); },
-        .read =
-            [](const Shape&, const Value& value, const Part& part, const Shape::Limits& limits, void* to) {
-                if constexpr (kKind == Kind::kTruth)
-                    at<T>(to) = truth_of(value, part);
-                else if constexpr (kKind == Kind::kWhole)
-                    at<T>(to) =
-                        static_cast<T>(whole_of(value, part, limits.range, std::numeric_limits<T>::min(),
-                                                std::numeric_limits<T>::max()));
-                else if constexpr (kKind == Kind::kNumber)
-                    at<T>(to) = static_cast<T>(number_of(value, part, limits.may_be_nan));
-                else
-                    at<T>(to) = text_of(value, part);
-            }};
+    return {.kind = kKind,
+            .write = [](const Shape&, const void* from) -> Value { return at<T>(from); },
+            .read =
+                [](const Shape&, const Value& value, const Part& part, Whole range, void* to) {
+                    if constexpr (kKind == Kind::kTruth)
+                        at<T>(to) = truth_of(value, part);
+                    else if constexpr (kKind == Kind::kWhole)
+                        at<T>(to) = static_cast<T>(whole_of(value, part, range, std::numeric_limits<T>::min(),
+                                                            std::numeric_limits<T>::max()));
+                    else if constexpr (kKind == Kind::kNumber)
+                        at<T>(to) = static_cast<T>(number_of(value, part));
+                    else
+                        at<T>(to) = text_of(value, part);
+                }};
 }
 
 }  // namespace shapes
