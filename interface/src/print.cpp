@@ -134,8 +134,12 @@ std::string types_page() {
         "JavaScript, and "
         "Python's `carom.games`. Missing keys have defaults.\n";
     for (const Shape* type : types()) {
-        text += fmt::format("\n## {}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", type->name,
-                            type->meaning);
+        text += fmt::format("\n## {}\n\n{}\n", type->name, type->meaning);
+        if (type->rows.front().set != nullptr) {
+            text += "Its keys are [those of the file](scene_format.md).\n";
+            continue;
+        }
+        text += "\n| key | value | meaning |\n|---|---|---|\n";
         for (const Shape::Member& row : type->rows)
             text +=
                 fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.range), row.meaning);

@@ -225,17 +225,17 @@ class Cue(NamedTuple):
     preset: str
     #: id of the ball that is struck
     ball: str
-    #: of the cue
+    #: of the cue [m/s]
     speed: float
-    #: 0 is +x, 90 is +y
+    #: 0 is +x, 90 is +y [degrees]
     aim_deg: float
-    #: of the butt; above 0 it lifts the ball; `"auto"`: the least that clears rails and balls
+    #: of the butt; above 0 it lifts the ball; `"auto"`: the least that clears rails and balls [degrees]
     elevation_deg: float
-    #: left and up positive, together at most 0.5: farther out the tip slips off
+    #: left and up positive, together at most 0.5: farther out the tip slips off [ball radii]
     offset: tuple[float, float]
-    #: of the cue
+    #: of the cue [kg]
     mass: float
-    #: of its end, for squirt; 0 for none, at most `mass`
+    #: of its end, for squirt; 0 for none, at most `mass` [kg]
     end_mass: float
     #: of the tip; 1 loses nothing
     restitution: float

@@ -385,17 +385,17 @@ export interface Cue {
   preset: string;
   /** id of the ball that is struck */
   ball: string;
-  /** of the cue */
+  /** of the cue [m/s] */
   speed: number;
-  /** 0 is +x, 90 is +y */
+  /** 0 is +x, 90 is +y [degrees] */
   aim_deg: number;
-  /** of the butt; above 0 it lifts the ball; `"auto"`: the least that clears rails and balls */
+  /** of the butt; above 0 it lifts the ball; `"auto"`: the least that clears rails and balls [degrees] */
   elevation_deg: number;
-  /** left and up positive, together at most 0.5: farther out the tip slips off */
+  /** left and up positive, together at most 0.5: farther out the tip slips off [ball radii] */
   offset: [number, number];
-  /** of the cue */
+  /** of the cue [kg] */
   mass: number;
-  /** of its end, for squirt; 0 for none, at most `mass` */
+  /** of its end, for squirt; 0 for none, at most `mass` [kg] */
   end_mass: number;
   /** of the tip; 1 loses nothing */
   restitution: number;
