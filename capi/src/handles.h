@@ -1,12 +1,9 @@
 // The contents of the C interface's opaque handles.
 #pragma once
 
-#include <string>
-
 #include "carom/engine/batch.h"
 #include "carom/engine/record.h"
 #include "carom/interface/shape.h"
-#include "guard.h"
 
 struct carom_scene {
     carom::Scene scene;
@@ -31,11 +28,6 @@ namespace carom::c {
 const interface::Value& part_at(const carom_value* value, const char* path);
 
 /// @param json  null: an object without keys @throws BadArgument with `name`
-inline interface::Value json_of(const char* json, const char* name) {
-    if (json == nullptr) return interface::Value::object();
-    interface::Value value = interface::Value::parse(json, nullptr, false);
-    if (value.is_discarded()) throw BadArgument(std::string(name) + ": expected JSON");
-    return value;
-}
+interface::Value json_of(const char* json, const char* name);
 
 }  // namespace carom::c

@@ -55,6 +55,19 @@ const Value& carom::c::part_at(const carom_value* value, const char* path) {
     return *at;
 }
 
+Value carom::c::json_of(const char* json, const char* name) {
+    if (json == nullptr) return Value::object();
+    // Copies and texts of values are made by recursion.
+    constexpr int kDeepest = 100;
+    const auto check = [&](int depth, auto, const Value&) {
+        if (depth > kDeepest) throw BadArgument(std::string(name) + ": nested too deep");
+        return true;
+    };
+    Value value = Value::parse(json, check, false);
+    if (value.is_discarded()) throw BadArgument(std::string(name) + ": expected JSON");
+    return value;
+}
+
 carom_status carom_value_parse(const char* json, carom_value** value) {
     return made(value, [&](carom_value& v) {
         need({json});

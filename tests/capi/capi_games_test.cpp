@@ -56,6 +56,8 @@ TEST(CApiValues, APathLeadsToAPart) {
     EXPECT_EQ(carom_value_text(value.get(), "", &words), CAROM_BAD_ARGUMENT);
     EXPECT_STREQ(carom_last_error(), "the value: expected a text; here is an object with list, yes, text");
     EXPECT_EQ(refused(carom_value_parse, "{"), "the value: expected JSON");
+    const std::string deep(1000000, '[');
+    EXPECT_EQ(refused(carom_value_parse, deep.c_str()), "the value: nested too deep");
     EXPECT_EQ(carom_value_number(nullptr, "", &found), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_value_json(nullptr, nullptr, 0), static_cast<std::size_t>(-1));
     carom_value_free(nullptr);

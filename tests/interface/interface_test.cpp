@@ -143,6 +143,11 @@ TEST(Interface, AWrongValueIsRefusedByItsPath) {
               "state.rules: snooker has no option \"call\"; it has miss");
     EXPECT_EQ(state(R"({"game": "snooker", "pionts": 1})").substr(0, 55),
               "state: unknown key \"pionts\"; expected one of game, turn");
+    const auto cue = [](const char* json) { return refused<Cue>(json, "cue"); };
+    EXPECT_EQ(cue(R"({"speed": "2"})"), "cue.speed: expected a number");
+    EXPECT_EQ(cue(R"({"offset": [0]})"), "cue.offset: expected a list of 2 numbers");
+    EXPECT_EQ(cue(R"({"preset": "iron"})"),
+              "cue.preset: expected one of low_deflection, plain, break, lossless");
     EXPECT_EQ(state("{}").substr(0, 40), "state.game: expected one of eight_ball, ");
     EXPECT_EQ(state("nothing").substr(0, 42), "state: expected an object with game, turn,");
     EXPECT_EQ(
