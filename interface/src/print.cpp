@@ -49,56 +49,45 @@ std::string in_words(const Shape& shape, Whole range) {
     }());
 }
 
-/// A type in Python. @param fixed  lists are tuples
-std::string in_python(const Shape& shape, bool fixed) {
-    switch (shape.kind) {
-        case Kind::kTruth:
-            return "bool";
-        case Kind::kWhole:
-            return "int";
-        case Kind::kNumber:
-            return "float";
-        case Kind::kText:
-            return "str";
-        case Kind::kChoice:
-            return &shape == &shape_of<games::Game>() ? "GameName" : "Literal[" + quoted_names(shape) + "]";
-        case Kind::kList:
-            return fixed ? "tuple[" + in_python(shape.item(), fixed) + ", ...]"
-                         : "list[" + in_python(shape.item(), fixed) + "]";
-        case Kind::kOptional:
-            return in_python(shape.item(), fixed) + " | None";
-        case Kind::kType:
-            return shape.name;
-        case Kind::kArray:
-            break;
-    }
-    const std::vector<std::string> items(shape.count, in_python(shape.item(), fixed));
-    return fmt::format("tuple[{}]", fmt::join(items, ", "));
-}
+/// How a language writes types; {} is the inner type.
+struct Language {
+    const char *truth, *whole, *number, *text, *null, *game, *choice, *between, *list, *array;
+};
+constexpr Language kPython{"bool",     "int",         "float", "str",      "None",
+                           "GameName", "Literal[{}]", ", ",    "list[{}]", "tuple[{}]"};
+/// Of values that callers make, which can be hashed.
+constexpr Language kFixedPython = [] {
+    Language fixed = kPython;
+    fixed.list = "tuple[{}, ...]";
+    return fixed;
+}();
+constexpr Language kTypeScript{"boolean", "number", "number", "string", "null",
+                               "Game",    "{}",     " | ",    "{}[]",   "[{}]"};
 
-/// A type in TypeScript.
-std::string in_typescript(const Shape& shape) {
+std::string in_code(const Shape& shape, const Language& of) {
     switch (shape.kind) {
         case Kind::kTruth:
-            return "boolean";
+            return of.truth;
         case Kind::kWhole:
+            return of.whole;
         case Kind::kNumber:
-            return "number";
+            return of.number;
         case Kind::kText:
-            return "string";
+            return of.text;
         case Kind::kChoice:
-            return &shape == &shape_of<games::Game>() ? "Game" : quoted_names(shape, " | ");
+            if (&shape == &shape_of<games::Game>()) return of.game;
+            return fmt::format(fmt::runtime(of.choice), quoted_names(shape, of.between));
         case Kind::kList:
-            return in_typescript(shape.item()) + "[]";
+            return fmt::format(fmt::runtime(of.list), in_code(shape.item(), of));
         case Kind::kOptional:
-            return in_typescript(shape.item()) + " | null";
+            return in_code(shape.item(), of) + " | " + of.null;
         case Kind::kType:
             return shape.name;
         case Kind::kArray:
             break;
     }
-    const std::vector<std::string> items(shape.count, in_typescript(shape.item()));
-    return fmt::format("[{}]", fmt::join(items, ", "));
+    const std::vector<std::string> items(shape.count, in_code(shape.item(), of));
+    return fmt::format(fmt::runtime(of.array), fmt::join(items, ", "));
 }
 
 std::string python_default(const Value& value) {
@@ -161,7 +150,8 @@ std::string types_for_python() {
         });
         for (const Shape::Member& row : type->rows) {
             std::string member =
-                fmt::format("    {}: {}", row.key, in_python(row.shape(), type->is_made_by_callers));
+                fmt::format("    {}: {}", row.key,
+                            in_code(row.shape(), type->is_made_by_callers ? kFixedPython : kPython));
             if (type->is_made_by_callers && !row.is_needed)
                 member += " = " + python_default(type->default_value().at(row.key));
             else if (!type->is_made_by_callers && &row > &*required)
@@ -182,8 +172,9 @@ std::string types_for_typescript() {
         text += "\n" + wrapped(fmt::format("/** {} */", type->meaning), " ", " * ") +
                 fmt::format("export interface {} {{\n", type->name);
         for (const Shape::Member& row : type->rows)
-            text += wrapped(fmt::format("  /** {} */", row.meaning), " ", "   * ") +
-                    wrapped(fmt::format("  {}: {};", row.key, in_typescript(row.shape())), " | ", "    ");
+            text +=
+                wrapped(fmt::format("  /** {} */", row.meaning), " ", "   * ") +
+                wrapped(fmt::format("  {}: {};", row.key, in_code(row.shape(), kTypeScript)), " | ", "    ");
         text += "}\n";
     }
     return text + "// end types\n";
