@@ -19,7 +19,8 @@ std::string quoted_names(const Shape& choice, const char* between = ", ") {
 }
 
 /// A type in words: "2: 0 to 9".
-std::string in_words(const Shape& shape, Whole range) {
+std::string in_words(const Shape& shape, const Shape::Limits& limits) {
+    const Whole& range = limits.range;
     switch (shape.kind) {
         case Kind::kTruth:
             return "truth";
@@ -27,18 +28,18 @@ std::string in_words(const Shape& shape, Whole range) {
             return range.least == range.most ? "whole number"
                                              : fmt::format("{} to {}", range.least, range.most);
         case Kind::kNumber:
-            return "number";
+            return limits.may_be_nan ? "number or null" : "number";
         case Kind::kText:
             return "text";
         case Kind::kChoice:
             if (&shape == &shape_of<games::Game>()) return "game";
             return quoted_names(shape);
         case Kind::kList:
-            return "list: " + in_words(shape.item(), range);
+            return "list: " + in_words(shape.item(), limits);
         case Kind::kArray:
-            return fmt::format("{}: {}", shape.count, in_words(shape.item(), range));
+            return fmt::format("{}: {}", shape.count, in_words(shape.item(), limits));
         case Kind::kOptional:
-            return in_words(shape.item(), range) + " or null";
+            return in_words(shape.item(), limits) + " or null";
         case Kind::kType:
             break;
     }
@@ -131,7 +132,7 @@ std::string types_page() {
         text += "\n| key | value | meaning |\n|---|---|---|\n";
         for (const Shape::Member& row : type->rows)
             text +=
-                fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.range), row.meaning);
+                fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.limits), row.meaning);
     }
     return text;
 }

@@ -65,7 +65,7 @@ Value write_rows(const Shape& shape, const void* from) {
     return all;
 }
 
-void read_rows(const Shape& shape, const Value& value, const Part& part, Whole, void* to) {
+void read_rows(const Shape& shape, const Value& value, const Part& part, const Shape::Limits&, void* to) {
     if (!value.is_object()) refuse(part, "expected an object with " + keys_of(shape));
     std::size_t known = 0;
     for (const Shape::Member& row : shape.rows) {
@@ -77,7 +77,7 @@ void read_rows(const Shape& shape, const Value& value, const Part& part, Whole, 
             continue;
         }
         ++known;
-        if (row.in != nullptr) row.shape().read(row.shape(), *found, inner, row.range, row.in(to));
+        if (row.in != nullptr) row.shape().read(row.shape(), *found, inner, row.limits, row.in(to));
         if (row.set != nullptr) row.set(to, *found, inner);
     }
     if (known < value.size()) {
@@ -123,8 +123,10 @@ bool truth_of(const Value& value, const Part& part) {
     return value.get<bool>();
 }
 
-double number_of(const Value& value, const Part& part) {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(part, "expected a number");
+double number_of(const Value& value, const Part& part, bool may_be_nan) {
+    if (may_be_nan && value.is_null()) return std::numeric_limits<double>::quiet_NaN();
+    if (!value.is_number() || (!may_be_nan && !std::isfinite(value.get<double>())))
+        refuse(part, may_be_nan ? "expected a number or null" : "expected a number");
     return value.get<double>();
 }
 

@@ -23,13 +23,14 @@ namespace carom::interface {
 struct Sample {
     int any = 0;
     std::int8_t small = 0;
-    double number = 0.0;
+    double missing = 0.0, number = 0.0;
     std::optional<Vec2> place;
     std::vector<std::array<bool, 2>> nested{};
     bool operator==(const Sample&) const = default;
 };
 constexpr auto rows_of(const Sample*) {
     return described("Sample", "", row<&Sample::any>("any", ""), row<&Sample::small>("small", ""),
+                     row<&Sample::missing>("missing", "").or_nan(),
                      row<&Sample::number>("number", "").needed(), row<&Sample::place>("place", ""),
                      row<&Sample::nested>("nested", ""));
 }
@@ -38,13 +39,13 @@ namespace {
 
 using Kind = Shape::Kind;
 
-Value random_value(const Shape& shape, Whole range, std::mt19937& random) {
+Value random_value(const Shape& shape, const Shape::Limits& limits, std::mt19937& random) {
     const auto up_to = [&](int most) { return std::uniform_int_distribution(0, most)(random); };
     switch (shape.kind) {
         case Kind::kTruth:
             return up_to(1) == 1;
         case Kind::kWhole: {
-            if (range.least == range.most) range = {-9, 9};
+            const Whole range = limits.range.least == limits.range.most ? Whole{-9, 9} : limits.range;
             return std::uniform_int_distribution(range.least, range.most)(random);
         }
         case Kind::kNumber:
@@ -54,12 +55,13 @@ Value random_value(const Shape& shape, Whole range, std::mt19937& random) {
         case Kind::kChoice:
             return shape.names[static_cast<std::size_t>(up_to(static_cast<int>(shape.names.size()) - 1))];
         case Kind::kOptional:
-            return up_to(1) == 0 ? Value() : random_value(shape.item(), range, random);
+            return up_to(1) == 0 ? Value() : random_value(shape.item(), limits, random);
         case Kind::kList:
         case Kind::kArray: {
             Value list = Value::array();
             const auto count = shape.kind == Kind::kArray ? shape.count : static_cast<std::size_t>(up_to(3));
-            for (std::size_t i = 0; i < count; ++i) list.push_back(random_value(shape.item(), range, random));
+            for (std::size_t i = 0; i < count; ++i)
+                list.push_back(random_value(shape.item(), limits, random));
             return list;
         }
         case Kind::kType:
@@ -71,7 +73,7 @@ Value random_value(const Shape& shape, Whole range, std::mt19937& random) {
         // The rules of a state are not any texts, and no preset has any mass.
         all[row.key] = std::string(row.key) == "rules"    ? Value::array()
                        : std::string(row.key) == "preset" ? Value("plain")
-                                                          : random_value(row.shape(), row.range, random);
+                                                          : random_value(row.shape(), row.limits, random);
     }
     return all;
 }
@@ -163,6 +165,7 @@ TEST(Interface, NumbersAreNotNarrowed) {
               "any: expected a whole number from -2147483648 to 2147483647");
     EXPECT_EQ(sample(R"({"number": 1, "small": 128})"), "small: expected a whole number from -128 to 127");
     EXPECT_EQ(sample(R"({"number": null})"), "number: expected a number");
+    EXPECT_EQ(sample(R"({"number": 1, "missing": "1"})"), "missing: expected a number or null");
     EXPECT_EQ(sample(R"({"number": 1, "place": [0]})"), "place: expected a list of 2 numbers");
     EXPECT_EQ(sample(R"({"number": 1, "nested": [[true, true], [true, 0]]})"),
               "nested[1][1]: expected true or false");
@@ -170,6 +173,7 @@ TEST(Interface, NumbersAreNotNarrowed) {
     // Python and C++ have such numbers, JSON has not.
     EXPECT_THROW(read_as<Sample>({{"number", std::nan("")}}), ValueError);
     EXPECT_THROW(read_as<Sample>({{"number", HUGE_VAL}}), ValueError);
+    EXPECT_TRUE(std::isnan(read_as<Sample>(Value::parse(R"({"number": 1, "missing": null})")).missing));
 }
 
 }  // namespace

@@ -20,10 +20,16 @@ struct Row {
     const char* key;
     const char* meaning;  ///< for people, with the unit
     Whole range{};
-    bool is_needed = false;  ///< a reader refuses a value without this key
+    bool is_needed = false;   ///< a reader refuses a value without this key
+    bool may_be_nan = false;  ///< the number may be missing: NaN, and null in JSON
     constexpr Row needed() const {
         Row row = *this;
         row.is_needed = true;
+        return row;
+    }
+    constexpr Row or_nan() const {
+        Row row = *this;
+        row.may_be_nan = true;
         return row;
     }
 };

@@ -49,10 +49,15 @@ struct Shape {
         kOptional,
         kType
     };
+    /// The limits of a row, for the values inside it.
+    struct Limits {
+        Whole range{};
+        bool may_be_nan = false;
+    };
     struct Member {
         const char* key;
         std::string meaning;
-        Whole range;  ///< of each number inside it
+        Limits limits;
         bool is_needed;
         const Shape& (*shape)();
         void* (*in)(void* object);                                        ///< null: it has the next two
@@ -63,7 +68,7 @@ struct Shape {
 
     Kind kind;
     Value (*write)(const Shape& shape, const void* from);
-    void (*read)(const Shape& shape, const Value& value, const Part& part, Whole range, void* to);
+    void (*read)(const Shape& shape, const Value& value, const Part& part, const Limits& limits, void* to);
     const char *name = "", *meaning = "";      ///< of a described type
     bool is_made_by_callers = false;           ///< the same
     Value (*default_value)() = nullptr;        ///< the same
@@ -146,13 +151,14 @@ namespace shapes {
 /// The expected items of a list: "whole numbers".
 const char* plural_of(const Shape& shape);
 Value write_rows(const Shape& shape, const void* from);
-void read_rows(const Shape& shape, const Value& value, const Part& part, Whole range, void* to);
+void read_rows(const Shape& shape, const Value& value, const Part& part, const Shape::Limits& limits,
+               void* to);
 std::size_t choice_of(const Shape& shape, const Value& value, const Part& part);
 /// @param most, least  of the C++ type
 std::int64_t whole_of(const Value& value, const Part& part, Whole range, std::int64_t least,
                       std::int64_t most);
 bool truth_of(const Value& value, const Part& part);
-double number_of(const Value& value, const Part& part);
+double number_of(const Value& value, const Part& part, bool may_be_nan = false);
 std::string text_of(const Value& value, const Part& part);
 /// With its unit.
 std::string meaning_of(const Key& key);
@@ -237,7 +243,7 @@ Shape make_shape() {
     each_row<T>([&]<auto kMember>(const Row<kMember>& row) {
         Shape::Member member{.key = row.key,
                              .meaning = row.meaning,
-                             .range = row.range,
+                             .limits = {row.range, row.may_be_nan},
                              .is_needed = row.is_needed,
                              .shape = shape_of<MemberOf<T, kMember>>,
                              .in = nullptr,
@@ -266,7 +272,7 @@ Shape make_shape() {
         (shape.rows.push_back(
              {.key = kSection.fields[kIndex].key,
               .meaning = meaning_of(kSection.fields[kIndex]),
-              .range = {},
+              .limits = {},
               .is_needed = false,
               .shape = shape_of_field(kSection.fields[kIndex]),
               .in = nullptr,
@@ -285,16 +291,17 @@ Shape make_shape() {
 
 template <class T>
 requires kIsChoice<T> Shape make_shape() {
-    Shape shape{.kind = Shape::Kind::kChoice,
-                .write = [](const Shape&, const void* from) -> Value { return name(at<T>(from)); },
-                .read =
-                    [](const Shape& of, const Value& value, const Part& part, Whole, void* to) {
-                        const std::size_t index = choice_of(of, value, part);
-                        if constexpr (std::is_enum_v<T>)
-                            at<T>(to) = static_cast<T>(index);
-                        else
-                            at<T>(to) = all_of(T{})[index];
-                    }};
+    Shape shape{
+        .kind = Shape::Kind::kChoice,
+        .write = [](const Shape&, const void* from) -> Value { return name(at<T>(from)); },
+        .read =
+            [](const Shape& of, const Value& value, const Part& part, const Shape::Limits&, void* to) {
+                const std::size_t index = choice_of(of, value, part);
+                if constexpr (std::is_enum_v<T>)
+                    at<T>(to) = static_cast<T>(index);
+                else
+                    at<T>(to) = all_of(T{})[index];
+            }};
     if constexpr (std::is_enum_v<T>)
         for (const char* each : names_of(T{})) shape.names.push_back(each);
     else
@@ -304,40 +311,41 @@ requires kIsChoice<T> Shape make_shape() {
 
 template <class T>
 requires kIsOptional<T> Shape make_shape() {
-    return {.kind = Shape::Kind::kOptional,
-            .write = [](const Shape&, const void* from) -> Value {
-                return at<T>(from) ? value_of(*at<T>(from)) : Value();
+    return {
+        .kind = Shape::Kind::kOptional,
+        .write = [](const Shape&, const void* from) -> Value {
+            return at<T>(from) ? value_of(*at<T>(from)) : Value();
+        },
+        .read =
+            [](const Shape& of, const Value& value, const Part& part, const Shape::Limits& limits, void* to) {
+                at<T>(to).reset();
+                if (!value.is_null()) of.item().read(of.item(), value, part, limits, &at<T>(to).emplace());
             },
-            .read =
-                [](const Shape& of, const Value& value, const Part& part, Whole range, void* to) {
-                    at<T>(to).reset();
-                    if (!value.is_null()) of.item().read(of.item(), value, part, range, &at<T>(to).emplace());
-                },
-            .item = shape_of<typename T::value_type>};
+        .item = shape_of<typename T::value_type>};
 }
 
 template <class T>
 requires(kIsList<T> || kIsArray<T>) Shape make_shape() {
     using Item = std::remove_cvref_t<decltype(std::declval<T&>()[0])>;
-    Shape shape{.kind = kIsList<T> ? Shape::Kind::kList : Shape::Kind::kArray,
-                .write = [](const Shape&, const void* from) -> Value {
-                    Value list = Value::array();
-                    for (const auto& each : at<T>(from)) list.push_back(value_of<Item>(each));
-                    return list;
-                },
-                .read =
-                    [](const Shape& of, const Value& value, const Part& part, Whole range, void* to) {
-                        T& list = at<T>(to);
-                        const bool fits = value.is_array() && (kIsList<T> || value.size() == of.count);
-                        if (!fits)
-                            refuse(part, "expected a list of " +
-                                             (kIsList<T> ? "" : std::to_string(of.count) + " ") +
-                                             plural_of(of.item()));
-                        if constexpr (kIsList<T>) list.resize(value.size());
-                        for (std::size_t i = 0; i < value.size(); ++i)
-                            of.item().read(of.item(), value[i], {&part, nullptr, i}, range, &list[i]);
-                    },
-                .item = shape_of<Item>};
+    Shape shape{
+        .kind = kIsList<T> ? Shape::Kind::kList : Shape::Kind::kArray,
+        .write = [](const Shape&, const void* from) -> Value {
+            Value list = Value::array();
+            for (const auto& each : at<T>(from)) list.push_back(value_of<Item>(each));
+            return list;
+        },
+        .read =
+            [](const Shape& of, const Value& value, const Part& part, const Shape::Limits& limits, void* to) {
+                T& list = at<T>(to);
+                const bool fits = value.is_array() && (kIsList<T> || value.size() == of.count);
+                if (!fits)
+                    refuse(part, "expected a list of " + (kIsList<T> ? "" : std::to_string(of.count) + " ") +
+                                     plural_of(of.item()));
+                if constexpr (kIsList<T>) list.resize(value.size());
+                for (std::size_t i = 0; i < value.size(); ++i)
+                    of.item().read(of.item(), value[i], {&part, nullptr, i}, limits, &list[i]);
+            },
+        .item = shape_of<Item>};
     if constexpr (kIsArray<T>) shape.count = static_cast<std::size_t>(T{}.size());
     return shape;
 }
@@ -352,20 +360,22 @@ Shape make_shape() {
                            : std::is_integral_v<T>       ? Kind::kWhole
                            : std::is_floating_point_v<T> ? Kind::kNumber
                                                          : Kind::kText;
-    return {.kind = kKind,
-            .write = [](const Shape&, const void* from) -> Value { return at<T>(from); },
-            .read =
-                [](const Shape&, const Value& value, const Part& part, Whole range, void* to) {
-                    if constexpr (kKind == Kind::kTruth)
-                        at<T>(to) = truth_of(value, part);
-                    else if constexpr (kKind == Kind::kWhole)
-                        at<T>(to) = static_cast<T>(whole_of(value, part, range, std::numeric_limits<T>::min(),
-                                                            std::numeric_limits<T>::max()));
-                    else if constexpr (kKind == Kind::kNumber)
-                        at<T>(to) = static_cast<T>(number_of(value, part));
-                    else
-                        at<T>(to) = text_of(value, part);
-                }};
+    return {
+        .kind = kKind,
+        .write = [](const Shape&, const void* from) -> Value { return at<T>(from); },
+        .read =
+            [](const Shape&, const Value& value, const Part& part, const Shape::Limits& limits, void* to) {
+                if constexpr (kKind == Kind::kTruth)
+                    at<T>(to) = truth_of(value, part);
+                else if constexpr (kKind == Kind::kWhole)
+                    at<T>(to) =
+                        static_cast<T>(whole_of(value, part, limits.range, std::numeric_limits<T>::min(),
+                                                std::numeric_limits<T>::max()));
+                else if constexpr (kKind == Kind::kNumber)
+                    at<T>(to) = static_cast<T>(number_of(value, part, limits.may_be_nan));
+                else
+                    at<T>(to) = text_of(value, part);
+            }};
 }
 
 }  // namespace shapes
