@@ -1,6 +1,8 @@
 // The types of the interface as a reference page and as Python classes.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <string>
@@ -8,6 +10,7 @@
 
 #include "carom/engine/batch.h"
 #include "carom/games/rules.h"
+#include "carom/games/solve.h"
 #include "carom/interface/shape.h"
 
 namespace carom::interface {
@@ -122,9 +125,13 @@ std::string types_page() {
         "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), JavaScript, and Python's "
         "`carom` "
         "and `carom.games`. Missing keys have defaults.\n";
+    const std::array kElsewhere = {&shape_of<games::GameInfo>(), &shape_of<games::RuleOption>(),
+                                   &shape_of<games::Hand>(),     &shape_of<games::Unknown>(),
+                                   &shape_of<games::Fall>(),     &shape_of<games::Cost>()};
     for (const Shape* type : types()) {
-        // For the interactive page; people read `carom describe games`.
-        if (type == &shape_of<games::GameInfo>() || type == &shape_of<games::RuleOption>()) continue;
+        // For the interactive page and for Python; people read `carom describe games` and the options of a
+        // search.
+        if (std::find(kElsewhere.begin(), kElsewhere.end(), type) != kElsewhere.end()) continue;
         text += fmt::format("\n## {}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", type->name,
                             type->meaning);
         for (const Shape::Member& row : type->rows)
@@ -134,12 +141,11 @@ std::string types_page() {
     text +=
         "\n## Outcomes\n\nOf n shots of b balls: arrays in C (`carom_batch_column`), Python (`Shots`) and "
         "JavaScript "
-        "(`Batch`), balls in the order of the scene. In sweeps and data frames each ball has columns `ID.x`, "
-        "`ID.y`, `ID.pocket`, ..., and numbers that stand for a status, a ball or a pocket are names. "
-        "Without a "
-        "result, `duration` and `xy` are NaN.\n\n| name | type | meaning |\n|---|---|---|\n";
+        "(`Batch`). Sweeps and data frames have `ID.x`, ..., and names for indices. No result: NaN, 0, "
+        "-1.\n\n"
+        "| name | meaning |\n|---|---|\n";
     for (const OutcomeColumn& column : kOutcomeColumns)
-        text += fmt::format("| `{}` | {} | {} |\n", column.name, name(column.type), in_words(column));
+        text += fmt::format("| `{}` | {} |\n", column.name, in_words(column));
     return text;
 }
 
