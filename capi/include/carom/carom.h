@@ -556,7 +556,7 @@ typedef enum carom_type {
     CAROM_FLOAT64 = 4 /* double */
 } carom_type;
 
-/* An array of outcomes by its name: "status" (a carom_shot_status), "duration", "first_hit", "xy", ...;
+/* An array of outcomes by its name: "status" (a carom_shot_status), "duration", "events", "xy", ...;
  * docs/reference/types.md lists them. It contains shot_count x *each numbers of the type *type, the numbers
  * of the first shot first, and is valid as long as the batch exists. `type` and `each` may be NULL. NULL,
  * with carom_last_error, for an unknown name, and for "hash" unless it was requested. */
