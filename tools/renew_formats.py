@@ -19,6 +19,7 @@ PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json",
 TYPES = ROOT / "python/carom/_types.py"
 MARKED = re.compile(r"(?ms)^ *(#|//) begin (\w+)\n.*?^ *\1 end \2\n")
 
+
 def printed_by(what):
     return subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
 
@@ -35,7 +36,8 @@ for what, name in PAGES.items():
     path.write_text(printed)
 
 # Between the marks; the methods of a class follow them. A new class is appended.
-for what, *paths in (("types-python", TYPES), ("types-typescript", ROOT / "web/npm/index.d.ts")):
+for what, *paths in (("types-python", TYPES, ROOT / "python/carom/_simulate.py"),
+                     ("types-typescript", ROOT / "web/npm/index.d.ts")):
     fresh = {block[2]: block[0] for block in MARKED.finditer(printed_by(what))}
     for path in paths:
         path.write_text(MARKED.sub(lambda old: fresh.pop(old[2], old[0]), path.read_text()))

@@ -37,7 +37,7 @@ PHRASES = {
 # Words that are right in some places, and the number of places where they are left: verbs that a machine or a
 # formula can have as its subject, and clauses used as nouns.
 WEAK = {
-    r"\btakes?\b": (71, "accept, need, last, use"),
+    r"\btakes?\b": (70, "accept, need, last, use"),
     r"\b(go|goes) on\b": (1, "continue"),
     r"\banswers?\b": (19, "return, print, respond"),
     r"\bstands?\b": (8, "be, be listed, be stated"),

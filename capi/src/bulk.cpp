@@ -8,9 +8,11 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/batch.h"
+#include "carom/engine/printable.h"
 #include "guard.h"
 #include "handles.h"
 
@@ -36,11 +38,7 @@ static_assert(CAROM_AIRBORNE == static_cast<int>(carom::MotionState::kAirborne))
 static_assert(CAROM_OUT == static_cast<int>(carom::MotionState::kOut));
 static_assert(CAROM_COLLIDING == static_cast<int>(carom::MotionState::kColliding));
 
-/// The array of a batch, or NULL.
-template <class T>
-const T* array_of(const carom_batch* batch, std::vector<T> carom::Batch::*list) {
-    return batch != nullptr ? (batch->batch.*list).data() : nullptr;
-}
+static_assert(CAROM_FLOAT64 == static_cast<int>(carom::NumberType::kFloat64));
 
 // With the height and the speed of a fall, which the engine's segment keeps separately.
 carom_segment segment_of(const carom::Segment& s, double gravity) {
@@ -104,29 +102,24 @@ size_t carom_batch_ball_count(const carom_batch* batch) {
     return batch != nullptr ? batch->batch.balls : 0;
 }
 
-const uint8_t* carom_batch_status(const carom_batch* batch) {
-    return reinterpret_cast<const uint8_t*>(array_of(batch, &carom::Batch::status));
-}
-
-// The arrays of a batch, by the names that they have in both interfaces.
-#define CAROM_BATCH_ARRAY(type, name)                          \
-    const type* carom_batch_##name(const carom_batch* batch) { \
-        return array_of(batch, &carom::Batch::name);           \
-    }
-CAROM_BATCH_ARRAY(double, duration)
-CAROM_BATCH_ARRAY(int64_t, events)
-CAROM_BATCH_ARRAY(int32_t, first_hit)
-CAROM_BATCH_ARRAY(int32_t, contacts)
-CAROM_BATCH_ARRAY(int32_t, approach_cushions)
-CAROM_BATCH_ARRAY(double, x)
-CAROM_BATCH_ARRAY(double, y)
-CAROM_BATCH_ARRAY(int32_t, pocket)
-CAROM_BATCH_ARRAY(int32_t, fell)
-CAROM_BATCH_ARRAY(int32_t, cushions)
-#undef CAROM_BATCH_ARRAY
-
-const uint64_t* carom_batch_hash(const carom_batch* batch) {
-    return batch != nullptr && !batch->batch.hash.empty() ? batch->batch.hash.data() : nullptr;
+const void* carom_batch_column(const carom_batch* batch, const char* name, carom_type* type, size_t* each) {
+    const void* array = nullptr;
+    guarded([&] {
+        need({batch, name});
+        std::string names;
+        for (const carom::OutcomeColumn& column : carom::kOutcomeColumns) {
+            names += (names.empty() ? "" : ", ") + std::string(column.name);
+            if (column.name != std::string_view(name)) continue;
+            array = column.array(batch->batch);
+            if (array == nullptr)
+                throw BadArgument(std::string(name) + " was not requested; set `hashes` to 1");
+            if (type != nullptr) *type = static_cast<carom_type>(column.type);
+            if (each != nullptr) *each = column.each(batch->batch.balls);
+            return;
+        }
+        throw BadArgument("no column is called " + carom::in_quotes(name) + "; there are " + names);
+    });
+    return array;
 }
 
 const char* carom_batch_message(const carom_batch* batch, size_t shot) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -275,10 +276,10 @@ class Solver {
             const Share on = share_of(found.successes, found.shots);
             std::optional<std::vector<double>> better;
             double most = on.high;
-            for (const Solution::Cost& cost : found.costs)
+            for (const Cost& cost : found.costs)
                 for (const double way : {-1.0, 1.0}) {
-                    const auto& part = way < 0.0 ? cost.less : cost.more;
-                    const double low = part ? share_of(*part, cost.shots).low : 0.0;
+                    const double part = way < 0.0 ? cost.less : cost.more;
+                    const double low = part > 0.0 ? with_interval(part, cost.shots).low : 0.0;
                     const auto values = low > most ? moved(found.values, cost, way) : std::nullopt;
                     if (values) better = values, most = low;
                 }
@@ -290,8 +291,7 @@ class Solver {
         return found;
     }
     /// The choices with one input off, if that is within its range.
-    std::optional<std::vector<double>> moved(std::vector<double> values, const Solution::Cost& cost,
-                                             double way) const {
+    std::optional<std::vector<double>> moved(std::vector<double> values, const Cost& cost, double way) const {
         for (std::size_t k = 0; k < values.size(); ++k) {
             const Choice& choice = options_.choices[k];
             if (choice.key != cost.input && !(cost.input == "aim" && choice.key == "cue.aim_deg")) continue;
@@ -317,9 +317,12 @@ class Solver {
         found.shots = candidate.shots;
         found.successes = candidate.successes;
         found.scene = trials_.meant_scene(values);
-        for (const auto& [fall, count] : falls) found.falls.push_back({fall.first, fall.second, count});
+        for (const auto& [fall, count] : falls)
+            found.falls.push_back({found.scene.ball[static_cast<std::size_t>(fall.first)].id,
+                                   found.scene.table.pockets[static_cast<std::size_t>(fall.second)].id,
+                                   share_of(count, found.shots).value});
         std::stable_sort(found.falls.begin(), found.falls.end(),
-                         [](const auto& one, const auto& two) { return one.count > two.count; });
+                         [](const Fall& one, const Fall& two) { return one.share > two.share; });
         add_costs(candidate, found.costs);
         return found;
     }
@@ -330,7 +333,7 @@ class Solver {
         trials_.exact = false;
         return one[0].successes;
     }
-    void add_costs(const Candidate& candidate, std::vector<Solution::Cost>& costs) {
+    void add_costs(const Candidate& candidate, std::vector<Cost>& costs) {
         for (std::size_t k = 0; k < options_.choices.size(); ++k) {
             const std::string& key = options_.choices[k].key;
             const bool place = key.find(".position.") != key.npos, tip = key.rfind("cue.offset", 0) == 0,
@@ -347,16 +350,16 @@ class Solver {
                              [this](Candidate&, double off) { trials_.turned = off; }));
     }
     template <class Off>
-    Solution::Cost cost(const Candidate& candidate, const std::string& input, double by, const char* unit,
-                        Off&& off) {
+    Cost cost(const Candidate& candidate, const std::string& input, double by, const char* unit, Off&& off) {
         const std::size_t shots = std::min(detail_shots(), candidate.shots);
-        Solution::Cost cost{input, by, unit, shots, {}, {}};
+        constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+        Cost cost{input, by, unit, kNone, kNone, static_cast<int>(shots)};
         for (const bool less : {true, false}) {
             std::vector<Candidate> moved(1, Candidate{candidate.values});
             off(moved[0], less ? -by : by);
             trials_.play(moved, shots);
             trials_.turned = 0.0;
-            if (moved[0].invalid < shots) (less ? cost.less : cost.more) = moved[0].successes;
+            if (moved[0].invalid < shots) (less ? cost.less : cost.more) = moved[0].score();
         }
         return cost;
     }
@@ -376,6 +379,10 @@ Share share_of(std::size_t part, std::size_t whole) {
     const double half = kZ * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
     // At 0 and 1, the interval must contain the share despite rounding.
     return {p, part == 0 ? 0.0 : middle - half, part == whole ? 1.0 : middle + half};
+}
+
+Share with_interval(double share, std::size_t shots) {
+    return share_of(static_cast<std::size_t>(std::llround(share * static_cast<double>(shots))), shots);
 }
 
 std::vector<Choice> default_choices() {

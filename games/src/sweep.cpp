@@ -1,11 +1,14 @@
 #include "carom/games/sweep.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,23 +35,30 @@ std::vector<SweepColumn> columns_of(const Variation& variation, const std::vecto
     std::vector<SweepColumn> columns = {{"shot", kWhole, "", false, Of::kShot}};
     for (std::size_t k = 0; k < variation.keys().size(); ++k)
         columns.push_back({variation.keys()[k], variation.kind(k), variation.unit(k), false, Of::kKey, k});
-    columns.push_back({"outcome", kText, "", false, Of::kOutcome});
-    columns.push_back({"duration", kNumber, "s", true, Of::kDuration});
-    columns.push_back({"events", kWhole, "", true, Of::kEvents});
-    columns.push_back({"first_contact", kText, "", true, Of::kFirstContact});
-    columns.push_back({"contacts", kWhole, "", true, Of::kContacts});
-    columns.push_back({"cushions", kWhole, "", true, Of::kCushions});
-    columns.push_back({"pocketed", kText, "", true, Of::kPocketed});
-    for (std::size_t i = 0; i < variation.base().ball.size(); ++i) {
-        const std::string& id = variation.base().ball[i].id;
-        columns.push_back({id + ".x", kNumber, "m", true, Of::kX, i});
-        columns.push_back({id + ".y", kNumber, "m", true, Of::kY, i});
-        columns.push_back({id + ".pocket", kText, "", true, Of::kPocket, i});
-    }
-    columns.push_back({"message", kText, "", false, Of::kMessage});
-    for (std::size_t m = 0; m < measures.size(); ++m)
+    const auto add = [&columns](const OutcomeColumn& outcome, const std::string& name, std::size_t which) {
+        const ValueKind kind = kind_of(outcome);
         columns.push_back(
-            {measures[m].text(), measures[m].is_number() ? kNumber : kText, "", true, Of::kMeasure, m});
+            {name, kind, kind == kText ? "" : outcome.unit, name != "status", Of::kOutcome, which, &outcome});
+    };
+    for (const OutcomeColumn& outcome : kOutcomeColumns)
+        if (outcome.per_ball == 0 && !outcome.on_request) add(outcome, outcome.name, 0);
+    columns.push_back({"pocketed", kText, "", true, Of::kPocketed});
+    for (std::size_t i = 0; i < variation.base().ball.size(); ++i)
+        for (const OutcomeColumn& outcome : kOutcomeColumns)
+            for (std::size_t k = 0; k < outcome.per_ball; ++k) {
+                const std::string_view name = outcome.name;
+                add(outcome,
+                    fmt::format("{}.{}", variation.base().ball[i].id,
+                                outcome.per_ball > 1 ? name.substr(k, 1) : name),
+                    i * outcome.per_ball + k);
+            }
+    columns.push_back({"message", kText, "", false, Of::kMessage});
+    for (std::size_t m = 0; m < measures.size(); ++m) {
+        const std::string& text = measures[m].text();
+        // A table has each name once.
+        std::erase_if(columns, [&text](const SweepColumn& column) { return column.name == text; });
+        columns.push_back({text, measures[m].is_number() ? kNumber : kText, "", true, Of::kMeasure, m});
+    }
     return columns;
 }
 
@@ -88,7 +98,6 @@ SweepValue Sweep::value(const SweepColumn& column, const SweptShots& shots, std:
     const BatchArrays& out = shots.outcomes;
     if (column.of_result && !has_result(out.status[shot])) return {};
     const std::vector<BallStart>& balls = variation_.base().ball;
-    const std::size_t ball = shot * balls.size() + column.which;  // in the columns of balls
     switch (column.of) {
         case Of::kShot:
             return static_cast<std::int64_t>(shots.first + shot);
@@ -99,39 +108,20 @@ SweepValue Sweep::value(const SweepColumn& column, const SweptShots& shots, std:
             return text_of(drawn);
         }
         case Of::kOutcome:
-            return std::string(name(out.status[shot]));
-        case Of::kDuration:
-            return out.duration[shot];
-        case Of::kEvents:
-            return out.events[shot];
-        case Of::kFirstContact: {
-            const std::int32_t hit = out.first_hit[shot];
-            return hit < 0 ? std::string() : balls[static_cast<std::size_t>(hit)].id;
-        }
-        case Of::kContacts:
-            return std::int64_t{out.contacts[shot]};
-        case Of::kCushions:
-            return std::int64_t{out.approach_cushions[shot]};
+            break;
         case Of::kPocketed:
             return fallen(balls, out.fell + shot * balls.size());
-        case Of::kX:
-            return out.x[ball * out.place_stride];
-        case Of::kY:
-            return out.y[ball * out.place_stride];
-        case Of::kPocket: {
-            const std::int32_t pocket = out.pocket[ball];
-            if (pocket == kOffTable) return std::string("out");
-            return pocket < 0 ? std::string()
-                              : variation_.base().table.pockets[static_cast<std::size_t>(pocket)].id;
-        }
         case Of::kMessage:
             return shots.messages[shot];
-        case Of::kMeasure:
-            break;
+        case Of::kMeasure: {
+            const MeasureValue& measured = shots.measured[shot * measures_.size() + column.which];
+            if (column.kind == ValueKind::kText) return text_of(measured);
+            return std::get<double>(measured);
+        }
     }
-    const MeasureValue& measured = shots.measured[shot * measures_.size() + column.which];
-    if (column.kind == ValueKind::kText) return text_of(measured);
-    return std::get<double>(measured);
+    const std::size_t at = shot * column.outcome->each(balls.size()) + column.which;
+    return std::visit([](auto&& value) -> SweepValue { return value; },
+                      value_of(*column.outcome, out, at, variation_.base()));
 }
 
 }  // namespace carom::games

@@ -2,11 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "carom/engine/batch.h"
 #include "carom/games/rules.h"
+#include "carom/games/solve.h"
 #include "carom/interface/shape.h"
 
 namespace carom::interface {
@@ -116,14 +120,29 @@ std::string wrapped(std::string text, const std::string& between, const std::str
     return lines + text + "\n";
 }
 
+/// An outcome of n shots of b balls: "(n, b) [s] its meaning".
+std::string in_words(const OutcomeColumn& column) {
+    return fmt::format("(n{}) {}{}{}",
+                       column.per_ball == 0   ? ""
+                       : column.per_ball == 1 ? ", b"
+                                              : fmt::format(", b, {}", column.per_ball),
+                       kind_of(column) == ValueKind::kText ? fmt::format("index of the {} ", column.unit)
+                       : *column.unit != '\0'              ? fmt::format("[{}] ", column.unit)
+                                                           : "",
+                       column.meaning, column.on_request ? ", on request" : "");
+}
+
 }  // namespace
 
 std::string types_page() {
     std::string text =
         "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), C (`carom_value`), "
-        "JavaScript, and "
-        "Python's `carom.games`. Missing keys have defaults.\n";
+        "JavaScript, and Python's `carom` and `carom.games`. Missing keys have defaults.\n";
+    const std::array kElsewhere = {&shape_of<games::Hand>(), &shape_of<games::Unknown>(),
+                                   &shape_of<games::Fall>(), &shape_of<games::Cost>()};
     for (const Shape* type : types()) {
+        // For Python; people read the options of a search.
+        if (std::find(kElsewhere.begin(), kElsewhere.end(), type) != kElsewhere.end()) continue;
         text += fmt::format("\n## {}\n\n{}\n", type->name, type->meaning);
         if (type->rows.front().set != nullptr) {
             text += "Its keys are [those of the file](scene_format.md).\n";
@@ -134,6 +153,14 @@ std::string types_page() {
             text +=
                 fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.limits), row.meaning);
     }
+    text +=
+        "\n## Outcomes\n\nOf n shots of b balls: arrays in C (`carom_batch_column`), Python (`Shots`) and "
+        "JavaScript "
+        "(`Batch`). Sweeps and data frames have `ID.x`, ..., and names for indices. No result: NaN, 0, "
+        "-1.\n\n"
+        "| name | meaning |\n|---|---|\n";
+    for (const OutcomeColumn& column : kOutcomeColumns)
+        text += fmt::format("| `{}` | {} |\n", column.name, in_words(column));
     return text;
 }
 
@@ -162,10 +189,27 @@ std::string types_for_python() {
         }
         text += fmt::format("# end {}\n", type->name);
     }
-    return text;
+    text += "    # begin outcomes\n";
+    for (const OutcomeColumn& column : kOutcomeColumns)
+        text += wrapped(fmt::format("    #: {}", in_words(column)), " ", "    #: ") +
+                fmt::format("    {}: NDArray[np.{}]{}\n", column.name, name(column.type),
+                            column.on_request ? " | None" : "");
+    return text + "    # end outcomes\n";
 }
 
 std::string types_for_typescript() {
+    std::string many, shot, ball;
+    for (const OutcomeColumn& column : kOutcomeColumns) {
+        std::string array = name(column.type);
+        array.front() = static_cast<char>(std::toupper(array.front()));
+        if (array.starts_with("Int64") || array.starts_with("Uint64")) array = "Big" + array;
+        many += wrapped(fmt::format("  /** {} */", in_words(column)), " ", "   * ") +
+                fmt::format("  {}{}: {}Array;\n", column.name, column.on_request ? "?" : "", array);
+        if (!column.on_request && column.per_ball < 2)
+            (column.per_ball == 0 ? shot : ball) +=
+                fmt::format("{}{}: {};\n", column.per_ball == 0 ? "  " : "    ", column.name,
+                            kind_of(column) == ValueKind::kText ? "string" : "number");
+    }
     std::string text =
         "// begin types\n" +
         wrapped("export type Game = " + quoted_names(shape_of<games::Game>(), " | ") + ";", " | ", "  ");
@@ -178,7 +222,12 @@ std::string types_for_typescript() {
                 wrapped(fmt::format("  {}: {};", row.key, in_code(row.shape(), kTypeScript)), " | ", "    ");
         text += "}\n";
     }
-    return text + "// end types\n";
+    return text + "// end types\n" +
+           fmt::format(
+               "  // begin outcomes\n{}  // end outcomes\n  // begin outcome\n{}  // end outcome\n    // "
+               "begin "
+               "ball_outcome\n{}    // end ball_outcome\n",
+               many, shot, ball);
 }
 
 }  // namespace carom::interface

@@ -107,7 +107,7 @@ def row(carom, name, text, speed, money, real, count):
         subprocess.run([carom, "sweep", path, *vary, "--count", str(count), "--seed", "1", "-o", out],
                        check=True, capture_output=True)
         with open(out, newline="") as table:
-            shots = [r for r in csv.DictReader(table) if r["outcome"] == "at_rest"]
+            shots = [r for r in csv.DictReader(table) if r["status"] == "at_rest"]
     fallen = [[b for b in r["pocketed"].split(";") if b] for r in shots]
     balls = [[b for b in f if b != "cue"] for f in fallen]
     games = len(shots)

@@ -41,7 +41,7 @@ def shares(args, folder, place, aim_deg, error, speed):
     shots, drops = ([[0] * BINS for _ in range(BINS)] for _ in range(2))
     with open(table, newline="") as stream:
         for row in csv.DictReader(stream):
-            if row["outcome"] == "invalid":
+            if row["status"] == "invalid":
                 continue
             i, j = (min(BINS - 1, int(BINS * (float(row[key]) - low) / (high - low)))
                     for key, (low, high) in zip(vary, (MOUTHS, ANGLES)))

@@ -15,13 +15,14 @@ from carom import games, kernel, plot, scenes, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError, SceneNotFoundError
 from carom._fit import FitResult, fit
-from carom._measures import Cost, Fall, Hand, Measure, Solution, Unknown, best_break, measures, solve
+from carom._measures import Measure, Solution, best_break, measures, solve
 from carom._program import accuracy, margin, sensitivity
 from carom._record import Event, EventColumn, Hit, Record, TablePlan, event_columns
 from carom._scene import Scene, tables
 from carom._render import render
 from carom._show import drawing, picture, shown
 from carom._simulate import Shots, ShotStatus, SimulationError, simulate, simulate_many
+from carom._types import Cost, Fall, Hand, Unknown
 
 if TYPE_CHECKING:
     from carom import gym as gym

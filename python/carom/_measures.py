@@ -10,6 +10,7 @@ from carom import _carom
 from carom._arguments import checked
 from carom._names import GameName, RackName, TableName
 from carom._scene import Scene, SceneLike, as_scene
+from carom._types import Cost, Fall, Hand, Unknown
 
 
 class Measure(NamedTuple):
@@ -28,56 +29,6 @@ def measures() -> list[Measure]:
     """The measures of a shot, as in `carom describe measures`. Expressions combine them: `Record.measure`,
     `carom.sweep.columns(measures=...)` and `carom.solve` take `'"9" in pocketed and not scratch'`."""
     return [Measure(*row) for row in _carom.measures()]
-
-
-class Hand(NamedTuple):
-    """Standard deviations of a player's errors.
-
-    aim_deg: of the aim [degrees]
-    speed: of the cue's speed, as a fraction of it
-    tip: of the tip, sideways and up [ball radii]
-    elevation_deg: of the elevation [degrees]
-    """
-
-    aim_deg: float = _carom.standard_hand()[0]
-    speed: float = _carom.standard_hand()[1]
-    tip: float = _carom.standard_hand()[2]
-    elevation_deg: float = _carom.standard_hand()[3]
-
-
-class Unknown(NamedTuple):
-    """Standard deviations of a table's properties that a player does not know; all 0 for exact tables.
-
-    cloth: of mu_s and of mu_r, as a fraction
-    rails: of the restitution of the cushions, as a fraction
-    places: of every ball along x and y, except racked ones [m]
-    gaps: between racked balls [m]
-    """
-
-    cloth: float = _carom.standard_unknown()[0]
-    rails: float = _carom.standard_unknown()[1]
-    places: float = _carom.standard_unknown()[2]
-    gaps: float = _carom.standard_unknown()[3]
-
-
-class Fall(NamedTuple):
-    """How often a ball fell into a pocket, as a share of the solution's shots."""
-
-    ball: str
-    pocket: str
-    share: float
-
-
-class Cost(NamedTuple):
-    """The share of successes if an input is off by `by` [unit]: less, and more; of `shots` each. NaN if no
-    scene is valid there, as with a ball inside a cushion."""
-
-    input: str
-    by: float
-    unit: str
-    less: float
-    more: float
-    shots: int
 
 
 class Solution(NamedTuple):
@@ -118,28 +69,18 @@ class Solution(NamedTuple):
 
 def _solutions(keys: Sequence[str], rows: Sequence[tuple[Any, ...]]) -> list[Solution]:
     return [
-        Solution(success, interval, shots, dict(zip(keys, values)), [Fall(*fall) for fall in falls],
-                 [Cost(*cost) for cost in costs], Scene._of(scene), *exact)
+        Solution(success, interval, shots, dict(zip(keys, values)), falls, costs, Scene._of(scene), *exact)
         for success, interval, shots, values, falls, costs, scene, exact in rows]
 
 
-def _limits(shots: int, best: int, seed: int, threads: int) -> None:
+def _limits(shots: int, best: int, seed: int, threads: int, hand: Hand, unknown: Unknown) -> None:
     for name, value, low, high in (("shots", shots, 1000, 10**10), ("best", best, 1, 20),
                                    ("seed", seed, 0, 2**64 - 1), ("threads", threads, 0, 256)):
         if not low <= value <= high:
             raise ValueError(f"{name}={value}: expected {low} to {high}")
-
-
-def _checked_hand(hand: Hand) -> tuple[float, float, float, float]:
-    if not all(0 <= error <= 100 for error in hand):
-        raise ValueError(f"hand={hand}: expected standard deviations from 0 to 100")
-    return hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg
-
-
-def _checked_unknown(unknown: Unknown) -> tuple[float, float, float, float]:
-    if not all(0 <= error <= 1 for error in unknown):
-        raise ValueError(f"unknown={unknown}: expected standard deviations from 0 to 1")
-    return unknown.cloth, unknown.rails, unknown.places, unknown.gaps
+    for name, errors, most in (("hand", hand, 100), ("unknown", unknown, 1)):
+        if not all(0 <= error <= most for error in errors):
+            raise ValueError(f"{name}={errors}: expected standard deviations from 0 to {most}")
 
 
 #: A range as `carom solve --vary` accepts it.
@@ -194,13 +135,13 @@ def solve(
 
     Raises ValueError for an expression, key or range that cannot be used.
     """
-    _limits(shots, best, seed, threads)
+    _limits(shots, best, seed, threads, hand, unknown)
     if not 0 <= layouts <= 100000:
         raise ValueError(f"layouts={layouts}: expected 0 to 100000")
     choices = _carom.default_choices() if vary is None else []
     choices += [(key, *_range(key, ends)) for key, ends in (vary or {}).items()]
-    rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand),
-                        _checked_unknown(unknown), layouts, shots, best, seed, threads, exact)
+    rows = _carom.solve(as_scene(scene)._native, want, game, choices, hand, unknown, layouts,
+                        shots, best, seed, threads, exact)
     found = _solutions([key for key, _, _ in choices], rows)
     # An exact shot has an aim instead of a hit, and a speed of the cue instead of the ball's.
     return [
@@ -236,9 +177,8 @@ def best_break(
 
     Raises ValueError for a game without a break or a number out of range.
     """
-    _limits(shots, best, seed, threads)
+    _limits(shots, best, seed, threads, hand, unknown)
     how = rack if isinstance(rack, str) else f"gap={float(rack)!r}"
     keys, _, _, rows = _carom.best_break(game, table, how, float(radius_sd), float(speed_max), box,
-                                         _checked_hand(hand), _checked_unknown(unknown), shots, best, seed,
-                                         threads)
+                                         hand, unknown, shots, best, seed, threads)
     return _solutions(keys, rows)

@@ -83,29 +83,44 @@ class ShotStatus(enum.IntEnum):
 
 #: The names of a shot's status, by number.
 _STATUS = tuple(_carom.status_names())
+#: Of outcomes: name, type, numbers of each ball (0: one of the shot), unit, whether it is on request.
+_COLUMNS = _carom.outcome_columns()
 
 
 @checked
 class Shots(NamedTuple):
     """n shots of b balls, in the order of `scene.ids`.
 
-    A shot without a result has its status and a message. Its duration and positions are NaN, its number of
-    events is 0, and everything else is -1 or 0.
+    A shot without a result has its status and a message. Its duration and positions are NaN, and everything
+    else is -1 or 0.
     """
 
-    status: NDArray[np.uint8]  # (n,) ShotStatus
-    duration: NDArray[np.float64]  # (n,) [s]
-    events: NDArray[np.int64]  # (n,)
-    first_hit: NDArray[np.int32]  # (n,) the first ball that the struck ball met, or -1
-    contacts: NDArray[np.int32]  # (n,) how many balls it met, each counted once
-    # (n,) how many cushions it met before its second ball, or in the whole shot if it met fewer than two
+    # begin outcomes
+    #: (n) index of the status at the end
+    status: NDArray[np.uint8]
+    #: (n) [s] until its end
+    duration: NDArray[np.float64]
+    #: (n) in its record
+    events: NDArray[np.int64]
+    #: (n) index of the ball that the struck ball hits first, or -1
+    first_hit: NDArray[np.int32]
+    #: (n) balls that it hits
+    contacts: NDArray[np.int32]
+    #: (n) cushions that it hits before its second ball, or in all; one that it touches at the start counts
+    #: after it has left it
     approach_cushions: NDArray[np.int32]
-    # (n, b, 2) [m] at the end; for a pocketed ball, the pocket; NaN for a ball that was left out
+    #: (n, b, 2) [m] at the end; of a pocketed ball, its pocket; NaN if it was left out
     xy: NDArray[np.float64]
-    pocket: NDArray[np.int32]  # (n, b) the pocket that holds the ball, -2 if it left the table, or -1
-    fell: NDArray[np.int32]  # (n, b) 0 for the ball that fell first, 1 for the next, ..., or -1
-    cushions: NDArray[np.int32]  # (n, b) how often the ball met a cushion or a jaw
-    hash: NDArray[np.uint64] | None  # (n,) int(record.hash(), 16), if requested
+    #: (n, b) index of the pocket that holds it; -1: none; -2: it has left the table
+    pocket: NDArray[np.int32]
+    #: (n, b) 0 for the first ball that falls, 1 for the next, ..., or -1
+    fell: NDArray[np.int32]
+    #: (n, b) how often it hits a cushion or a jaw
+    cushions: NDArray[np.int32]
+    #: (n) of the record, on request
+    hash: NDArray[np.uint64] | None
+    # end outcomes
+
     messages: dict[int, str]  # by shot: why it has no result
     ids: tuple[str, ...] = ()  # the balls
     paths: NDArray[np.float64] | None = None  # (n, times, b, 3) [m], if times were given
@@ -122,10 +137,9 @@ class Shots(NamedTuple):
     def to_arrow(self) -> pyarrow.Table:
         """The shots as a pyarrow Table with one row per shot; a copy. Needs pyarrow (extra [sweep]).
 
-        The columns are status (by name), duration [s], events, first_hit (an id or null), contacts,
-        approach_cushions, for every ball ID.x, ID.y [m], ID.pocket (an id, "out" or "", as in a sweep),
-        ID.fell and ID.cushions, hash if there is one, and message ("" for a shot with a result). `paths` is
-        left out.
+        The columns are the arrays, for every ball ID.x, ID.y, ID.pocket, ..., with names and ids (null for no
+        ball, "out" for a ball off the table, "" for no pocket) instead of numbers, and message ("" for a shot
+        with a result). `paths` is left out.
         """
         return _optional("pyarrow").table(self._columns())
 
@@ -140,57 +154,46 @@ class Shots(NamedTuple):
     def _columns(self) -> dict[str, Any]:
         n, balls = self.pocket.shape
         ids = self.ids or tuple(map(str, range(balls)))
-        names = [*ids, None]  # the index -1 is the last one
-        pockets = [*(self.pockets or map(str, range(self.pocket.max(initial=-1) + 1))), "out", ""]
-        columns: dict[str, Any] = {"status": [_STATUS[status] for status in self.status.tolist()]}
-        columns |= {"duration": self.duration, "events": self.events}
-        columns |= {"first_hit": [names[ball] for ball in self.first_hit.tolist()]}
-        columns |= {"contacts": self.contacts, "approach_cushions": self.approach_cushions}
-        for ball, name in enumerate(ids):
-            columns |= {f"{name}.{axis}": self.xy[:, ball, k].copy() for k, axis in enumerate("xy")}
-            columns[f"{name}.pocket"] = [pockets[pocket] for pocket in self.pocket[:, ball].tolist()]
-            for key in ("fell", "cushions"):
-                columns[f"{name}.{key}"] = getattr(self, key)[:, ball].copy()
-        if self.hash is not None:
-            columns["hash"] = self.hash
+        pockets = self.pockets or tuple(map(str, range(self.pocket.max(initial=-1) + 1)))
+        # The index -1 is the last one.
+        names = {"status": _STATUS, "ball": (*ids, None), "pocket": (*pockets, "out", "")}
+
+        def column(values: NDArray[Any], unit: str) -> Any:
+            return [names[unit][i] for i in values.tolist()] if unit in names else values.copy()
+
+        columns = {name: column(getattr(self, name), unit) for name, _, each, unit, _ in _COLUMNS
+                   if each == 0 and getattr(self, name) is not None}
+        for ball, id in enumerate(ids):
+            for name, _, each, unit, _ in _COLUMNS:
+                for k, part in enumerate(name if each > 1 else [name] * each):  # "x" and "y" of "xy"
+                    values = getattr(self, name).reshape(n, balls, each)[:, ball, k]
+                    columns[f"{id}.{part}"] = column(values, unit)
         return columns | {"message": [self.messages.get(shot, "") for shot in range(n)]}
 
     def __repr__(self) -> str:
         n, balls = self.pocket.shape
         counts = zip(_STATUS, np.bincount(self.status, minlength=len(_STATUS)).tolist())
         ended = ", ".join(f"{count} {name}" for name, count in counts if count > 0)
-        paths = "" if self.paths is None else f", paths {self.paths.shape} m"
-        return (
-            f"<carom.Shots: {n} shots of {balls} balls: {ended or 'none'};\n"
-            f" status, duration [s], events, first_hit, contacts, approach_cushions ({n},), "
-            f"xy ({n}, {balls}, 2) m,\n"
-            f" pocket, fell, cushions ({n}, {balls}){'' if self.hash is None else f', hash ({n},)'}{paths}>"
-        )
+        units = {name: f" [{unit}]" for name, _, _, unit, _ in _COLUMNS if unit in ("s", "m")}
+        units["paths"] = " [m]"
+        shapes: dict[tuple[int, ...], list[str]] = {}
+        for name, array in self._asdict().items():
+            if isinstance(array, np.ndarray):
+                shapes.setdefault(array.shape, []).append(name + units.get(name, ""))
+        arrays = ",\n".join(f" {', '.join(names)} {shape}" for shape, names in shapes.items())
+        return f"<carom.Shots: {n} shots of {balls} balls: {ended or 'none'};\n{arrays}>"
 
-    def _native(self) -> Any:
+    def _native(self) -> list[NDArray[Any] | None]:
         """The arrays as the extension module accepts them."""
-        arrays = [array.reshape(-1) for array in self[:11] if isinstance(array, np.ndarray)]
-        return tuple(arrays if self.hash is not None else [*arrays, np.empty(0, np.uint64)])
+        return [getattr(self, row[0]) for row in _COLUMNS]
 
     @classmethod
     def empty(cls, shots: int, balls: int, *, hashes: bool = False, times: int | None = None) -> Shots:
         """Arrays for `simulate_many(out=...)`; `times` is the number of its times."""
-        one, each = (shots,), (shots, balls)
-        return cls(
-            status=np.empty(one, np.uint8),
-            duration=np.empty(one),
-            events=np.empty(one, np.int64),
-            first_hit=np.empty(one, np.int32),
-            contacts=np.empty(one, np.int32),
-            approach_cushions=np.empty(one, np.int32),
-            xy=np.empty((*each, 2)),
-            pocket=np.empty(each, np.int32),
-            fell=np.empty(each, np.int32),
-            cushions=np.empty(each, np.int32),
-            hash=np.empty(one, np.uint64) if hashes else None,
-            messages={},
-            paths=None if times is None else np.empty((shots, times, balls, 3)),
-        )
+        arrays: dict[str, Any] = {
+            name: np.empty((shots, balls, each)[: 1 + each], type) if hashes or not on_request else None
+            for name, type, each, _, on_request in _COLUMNS}
+        return cls(**arrays, messages={}, paths=None if times is None else np.empty((shots, times, balls, 3)))
 
 
 def _array(name: str, values: ArrayLike, shape: tuple[int, ...], words: str) -> NDArray[np.float64]:

@@ -361,3 +361,64 @@ class Aim(NamedTuple):
     #: Why there is no aim; "" if there is one.
     why: str = ""
 # end Aim
+# begin Hand
+class Hand(NamedTuple):
+    """Standard deviations of a player's independent normal errors."""
+
+    #: Of the aim [degrees].
+    aim_deg: float = 0.2
+    #: Of the cue's speed, as a fraction of it.
+    speed: float = 0.03
+    #: Of the tip, sideways and up [ball radii].
+    tip: float = 0.02
+    #: Of the elevation [degrees].
+    elevation_deg: float = 0.0
+# end Hand
+
+
+# begin Unknown
+class Unknown(NamedTuple):
+    """Standard deviations of a table's properties that a player does not know, drawn anew for every trial;
+    all 0 for exact tables."""
+
+    #: Of mu_s and of mu_r, as a fraction.
+    cloth: float = 0.05
+    #: Of the restitution of the cushions, as a fraction.
+    rails: float = 0.02
+    #: Of every ball along x and y, except racked ones [m].
+    places: float = 0.0001
+    #: Between racked balls [m].
+    gaps: float = 2e-05
+# end Unknown
+
+
+# begin Fall
+class Fall(NamedTuple):
+    """How often a ball falls into a pocket."""
+
+    #: Its id.
+    ball: str
+    #: Its id.
+    pocket: str
+    #: Of the shots of the solution.
+    share: float
+# end Fall
+
+
+# begin Cost
+class Cost(NamedTuple):
+    """The success if one input is off."""
+
+    #: Its key, or aim.
+    input: str
+    #: The error.
+    by: float
+    #: Of the error.
+    unit: str
+    #: Share of successes; NaN if no scene is valid there.
+    less: float
+    #: The same in the other direction.
+    more: float
+    #: In each direction.
+    shots: int
+# end Cost

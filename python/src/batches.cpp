@@ -149,7 +149,7 @@ std::tuple<std::vector<SweepArrays>, nb::any, nb::any> sweep_shots(const games::
             BatchOptions options;
             options.threads = threads;
             options.stop = std::move(interrupted);
-            const games::SweptShots shots = sweep.play(first, count, isa, options, batch.arrays());
+            const games::SweptShots shots = sweep.play(first, count, isa, options, batch);
             for (const games::SweepColumn& column : sweep.columns())
                 values.push_back(values_of(sweep, column, shots));
         });
@@ -159,10 +159,10 @@ std::tuple<std::vector<SweepArrays>, nb::any, nb::any> sweep_shots(const games::
     std::vector<SweepArrays> columns;
     for (std::size_t k = 0; k < values.size(); ++k)
         columns.push_back(arrays_of(sweep.columns()[k], std::move(values[k])));
-    std::vector<std::uint8_t> status(count);
-    std::transform(batch.status.begin(), batch.status.end(), status.begin(),
-                   [](ShotStatus s) { return static_cast<std::uint8_t>(s); });
-    return {std::move(columns), array_of(std::move(status)), array_of(std::move(batch.hash))};
+    std::vector<std::uint8_t> status;
+    for (std::size_t i = 0; i < count; ++i) status.push_back(static_cast<std::uint8_t>(batch.status[i]));
+    std::vector<std::uint64_t> hash(batch.hash, batch.hash + (hashes ? count : 0));
+    return {std::move(columns), array_of(std::move(status)), array_of(std::move(hash))};
 }
 
 /// Name, kind and unit.
@@ -177,12 +177,21 @@ std::vector<std::tuple<std::string, std::string, std::string>> column_rows(const
     return rows;
 }
 
+/// Name, type, numbers of each ball (0: one of the shot), unit, and whether it is on request.
+auto outcome_rows() {
+    std::vector<std::tuple<std::string, std::string, std::size_t, std::string, bool>> rows;
+    for (const OutcomeColumn& c : kOutcomeColumns)
+        rows.emplace_back(c.name, name(c.type), c.per_ball, c.unit, c.on_request);
+    return rows;
+}
+
 }  // namespace
 
 void add_batches(nb::module_& m) {
     m.def("simulate_many", many, nb::arg("scene"), nb::arg("shots"), nb::arg("columns"), nb::arg("absent"),
           nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"),
           nb::arg("out").noconvert(), nb::arg("times").noconvert(), nb::arg("paths").noconvert());
+    m.def("outcome_columns", outcome_rows);
     nb::class_<games::Sweep>(m, "Sweep")
         .def_prop_ro("columns", column_rows)
         .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"), nb::arg("hashes"));

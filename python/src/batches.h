@@ -1,18 +1,17 @@
 // Arrays of batches, and the playing of a batch without the GIL.
 #pragma once
 
-#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,30 +20,17 @@
 
 namespace carom::python {
 
-/// The caller's arrays, contiguous, of n and of n x balls (x and y alternate), in the order of Shots in
-/// _simulate.py, which makes and checks them: status, duration, events, first_hit, contacts,
-/// approach_cushions, xy, pocket, fell, cushions, hash (empty: not wanted).
-using ShotArrays = std::tuple<Flat<std::uint8_t>, Flat<double>, Flat<std::int64_t>, Flat<std::int32_t>,
-                              Flat<std::int32_t>, Flat<std::int32_t>, Flat<double>, Flat<std::int32_t>,
-                              Flat<std::int32_t>, Flat<std::int32_t>, Flat<std::uint64_t>>;
+/// The caller's contiguous arrays in the order of kOutcomeColumns, which _simulate.py makes and checks; None
+/// for one that is not wanted.
+using ShotArrays = std::vector<nb::object>;
 
 inline BatchArrays batch_arrays(const ShotArrays& arrays) {
-    const auto& [status, duration, events, first_hit, contacts, approach_cushions, xy, pocket, fell, cushions,
-                 hash] = arrays;
+    if (arrays.size() != std::size(kOutcomeColumns))
+        throw nb::value_error("expected an array for each column");
     BatchArrays out;
-    out.status = reinterpret_cast<ShotStatus*>(status.data());
-    out.duration = duration.data();
-    out.events = events.data();
-    out.first_hit = first_hit.data();
-    out.contacts = contacts.data();
-    out.approach_cushions = approach_cushions.data();
-    out.x = xy.data();
-    out.y = xy.data() + 1;
-    out.place_stride = 2;
-    out.pocket = pocket.data();
-    out.fell = fell.data();
-    out.cushions = cushions.data();
-    if (hash.size() > 0) out.hash = hash.data();
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+        if (!arrays[i].is_none())
+            kOutcomeColumns[i].set_array(out, nb::cast<nb::ndarray<nb::c_contig>>(arrays[i], false).data());
     return out;
 }
 
@@ -69,19 +55,15 @@ auto interruptible(Run&& run) {
 
 /// Plays a batch into the caller's arrays.
 template <class Play>
-std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int threads, Play&& play) {
+std::vector<Failure> played(const ShotArrays& arrays, int threads, Play&& play) {
     const BatchArrays out = batch_arrays(arrays);
     return interruptible([&](std::function<bool()> stop) {
         BatchOptions options;
         options.threads = threads;
         options.stop = std::move(stop);
         std::vector<Failure> failures;
-        for (Batch::Message& message : play(options, out)) {
-            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-            out.duration[message.shot] = kNone;
-            std::fill_n(out.x + message.shot * balls * 2, 2 * balls, kNone);
+        for (Batch::Message& message : play(options, out))
             failures.emplace_back(message.shot, std::move(message.text));
-        }
         return failures;
     });
 }
@@ -97,14 +79,13 @@ std::vector<Failure> played_columns(const NativeScene& native, const std::vector
     std::vector<BatchColumn> list;
     for (const auto& [key, values] : columns) list.push_back({key, std::span(values.data(), values.size())});
     const std::span left_out(absent.data(), absent.size());
-    return played(out, native.scene->ball.size(), threads,
-                  [&](BatchOptions& options, const BatchArrays& into) {
-                      Scene scene = *native.scene;
-                      scene.stop.events = fewer(scene.stop.events, max_events);
-                      options.simulate.until = until;
-                      options.absent = left_out;
-                      return play(scene, list, isa, options, into);
-                  });
+    return played(out, threads, [&](BatchOptions& options, const BatchArrays& into) {
+        Scene scene = *native.scene;
+        scene.stop.events = fewer(scene.stop.events, max_events);
+        options.simulate.until = until;
+        options.absent = left_out;
+        return play(scene, list, isa, options, into);
+    });
 }
 
 }  // namespace carom::python

@@ -28,6 +28,7 @@
 #include "carom/games/solve.h"
 #include "measures.h"
 #include "native.h"
+#include "values.h"
 
 namespace carom::python {
 
@@ -90,38 +91,17 @@ std::pair<games::MeasureValue, bool> measured(const NativeRecord& r, const Nativ
 }
 
 using ChoiceRow = std::tuple<std::string, double, double>;
-/// Shares: NaN if no scene is valid there.
-using CostRow = std::tuple<std::string, double, std::string, double, double, std::size_t>;
-/// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
-/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is not smaller; the share on
-/// exact tables, and the share of the best of each search.
+/// Share of successes with its interval, shots, values, falls, costs, scene, and of an exact one the miss [m]
+/// and why it is not smaller; the share on exact tables, and the share of the best of each search.
 using SolutionRow =
-    std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
-               std::vector<std::tuple<std::string, std::string, double>>, std::vector<CostRow>, NativeScene,
-               std::tuple<double, std::string, double, std::vector<double>>>;
+    std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>, nb::any, nb::any,
+               NativeScene, std::tuple<double, std::string, double, std::vector<double>>>;
 
-/// Aim [degrees], speed [-], tip [ball radii], elevation [degrees].
-using HandRow = std::tuple<double, double, double, double>;
-
-/// Cloth [-], rails [-], places [m], gaps [m].
-using UnknownRow = std::tuple<double, double, double, double>;
-
-UnknownRow standard_unknown() {
-    const games::Unknown unknown;
-    return {unknown.cloth, unknown.rails, unknown.places, unknown.gaps};
-}
-
-HandRow standard_hand() {
-    const games::Hand hand;
-    return {hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg};
-}
-
-games::SolveOptions options_of(const HandRow& hand, const UnknownRow& unknown, std::size_t shots,
-                               std::size_t best, std::uint64_t seed, int threads) {
+games::SolveOptions options_of(nb::handle hand, nb::handle unknown, std::size_t shots, std::size_t best,
+                               std::uint64_t seed, int threads) {
     games::SolveOptions options;
-    std::tie(options.unknown.cloth, options.unknown.rails, options.unknown.places, options.unknown.gaps) =
-        unknown;
-    std::tie(options.hand.aim_deg, options.hand.speed, options.hand.tip, options.hand.elevation_deg) = hand;
+    options.hand = taken<games::Hand>(hand, "hand");
+    options.unknown = taken<games::Unknown>(unknown, "unknown");
     options.shots = shots;
     options.best = best;
     options.seed = seed;
@@ -151,24 +131,10 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
     std::vector<SolutionRow> rows;
     for (std::size_t i = 0; i < solutions.size(); ++i) {
         const games::Solution& solution = solutions[i];
-        std::vector<std::tuple<std::string, std::string, double>> falls;
-        for (const games::Solution::Fall& fall : solution.falls)
-            falls.emplace_back(scene.ball[static_cast<std::size_t>(fall.ball)].id,
-                               scene.table.pockets[static_cast<std::size_t>(fall.pocket)].id,
-                               games::share_of(fall.count, solution.shots).value);
-        std::vector<CostRow> costs;
-        for (const games::Solution::Cost& cost : solution.costs) {
-            const auto share = [&cost](const std::optional<std::size_t>& part) {
-                return part ? games::share_of(*part, cost.shots).value
-                            : std::numeric_limits<double>::quiet_NaN();
-            };
-            costs.emplace_back(cost.input, cost.by, cost.unit, share(cost.less), share(cost.more),
-                               cost.shots);
-        }
         const std::string text = scene_text(solution.scene);
         const games::Share share = games::share_of(solution.successes, solution.shots);
         rows.emplace_back(share.value, std::pair(share.low, share.high), solution.shots, solution.values,
-                          falls, costs,
+                          given(solution.falls), given(solution.costs),
                           NativeScene{std::make_shared<const Scene>(std::move(solution.scene)), text},
                           std::tuple(exact ? refined[i].miss : std::numeric_limits<double>::quiet_NaN(),
                                      exact ? refined[i].trouble : "",
@@ -179,7 +145,7 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
 
 std::vector<SolutionRow> solve(const NativeScene& native, const std::string& want,
                                const std::optional<std::string>& game, const std::vector<ChoiceRow>& choices,
-                               const HandRow& hand, const UnknownRow& unknown, int layouts, std::size_t shots,
+                               nb::handle hand, nb::handle unknown, int layouts, std::size_t shots,
                                std::size_t best, std::uint64_t seed, int threads, bool exact) {
     games::SolveOptions options = options_of(hand, unknown, shots, best, seed, threads);
     for (const auto& [key, low, high] : choices) options.choices.push_back({key, low, high});
@@ -193,8 +159,8 @@ std::vector<SolutionRow> solve(const NativeScene& native, const std::string& wan
 /// The searched keys, the goal, the speed of the ball for each m/s of the cue, the solutions.
 std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRow>> best_break(
     const std::string& game, const std::string& table, const std::string& rack, double radius_sd,
-    double speed_max, bool box, const HandRow& hand, const UnknownRow& unknown, std::size_t shots,
-    std::size_t best, std::uint64_t seed, int threads) {
+    double speed_max, bool box, nb::handle hand, nb::handle unknown, std::size_t shots, std::size_t best,
+    std::uint64_t seed, int threads) {
     games::BreakOptions wanted{game, table, rack, radius_sd, speed_max, box, seed};
     games::BreakSearch search;
     try {
@@ -227,8 +193,6 @@ void add_measures(nb::module_& m) {
     m.def("best_break", best_break, nb::arg("game"), nb::arg("table"), nb::arg("rack"), nb::arg("radius_sd"),
           nb::arg("speed_max"), nb::arg("box"), nb::arg("hand"), nb::arg("unknown"), nb::arg("shots"),
           nb::arg("best"), nb::arg("seed"), nb::arg("threads"));
-    m.def("standard_hand", standard_hand);
-    m.def("standard_unknown", standard_unknown);
     m.def("default_choices", [] {
         std::vector<ChoiceRow> rows;
         for (const games::Choice& c : games::default_choices()) rows.emplace_back(c.key, c.low, c.high);

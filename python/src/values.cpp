@@ -19,9 +19,10 @@ using Kind = Shape::Kind;
 nb::handle class_of(const Shape& type) {
     static const auto kClasses = [] {
         std::unordered_map<const Shape*, nb::handle> classes;
-        const nb::module_ games = nb::module_::import_("carom.games");
+        const nb::module_ carom = nb::module_::import_("carom"), games = nb::module_::import_("carom.games");
         for (const Shape* each : interface::types())
-            classes[each] = nb::object(games.attr(each->name)).release();
+            classes[each] =
+                nb::object((nb::hasattr(games, each->name) ? games : carom).attr(each->name)).release();
         return classes;
     }();
     return kClasses.at(&type);

@@ -26,6 +26,17 @@ BatchPtr many(const carom_scene* scene, const std::vector<const char*>& keys,
     return {batch, carom_batch_free};
 }
 
+template <class T>
+const T* column(const carom_batch* batch, const char* name, carom_type type, std::size_t each) {
+    carom_type its_type{};
+    std::size_t its_each = 0;
+    const void* array = carom_batch_column(batch, name, &its_type, &its_each);
+    EXPECT_NE(array, nullptr) << carom_last_error();
+    EXPECT_EQ(its_type, type) << name;
+    EXPECT_EQ(its_each, each) << name;
+    return static_cast<const T*>(array);
+}
+
 TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
     const ScenePtr scene = shipped_scene("side_bank");
     const std::vector<const char*> keys = {"cue.aim_deg", "cue.speed", "ball.1.position.x"};
@@ -39,6 +50,14 @@ TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
         const BatchPtr batch = many(scene.get(), keys, values, shots, threads);
         ASSERT_EQ(carom_batch_shot_count(batch.get()), shots);
         ASSERT_EQ(carom_batch_ball_count(batch.get()), 2u);
+        const auto* const status = column<std::uint8_t>(batch.get(), "status", CAROM_UINT8, 1);
+        const auto* const first_hit = column<std::int32_t>(batch.get(), "first_hit", CAROM_INT32, 1);
+        const auto* const hashes = column<std::uint64_t>(batch.get(), "hash", CAROM_UINT64, 1);
+        const auto* const duration = column<double>(batch.get(), "duration", CAROM_FLOAT64, 1);
+        const auto* const events = column<std::int64_t>(batch.get(), "events", CAROM_INT64, 1);
+        const auto* const xy = column<double>(batch.get(), "xy", CAROM_FLOAT64, 4);
+        const auto* const pocket = column<std::int32_t>(batch.get(), "pocket", CAROM_INT32, 2);
+        const auto* const fell = column<std::int32_t>(batch.get(), "fell", CAROM_INT32, 2);
         for (std::size_t i = 0; i < shots; ++i) {
             carom_cue cue;
             carom_cue_init(&cue);
@@ -50,38 +69,35 @@ TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
             const double one[9] = {values[2 * shots + i], 0.90, 0.028575};
             ASSERT_EQ(carom_scene_set_ball(shot.get(), "1", one), CAROM_OK);
             if (i == 7) {
-                EXPECT_EQ(carom_batch_status(batch.get())[i], CAROM_SHOT_INVALID);
+                EXPECT_EQ(status[i], CAROM_SHOT_INVALID);
                 EXPECT_NE(
                     std::string(carom_batch_message(batch.get(), i)).find("cue.speed = -1 is out of range"),
                     std::string::npos);
-                EXPECT_EQ(carom_batch_first_hit(batch.get())[i], -1);
+                EXPECT_EQ(first_hit[i], -1);
                 continue;
             }
             const RecordPtr record = played(shot.get());
             char hash[17];
             ASSERT_EQ(carom_record_hash(record.get(), hash), CAROM_OK);
-            EXPECT_EQ(carom_batch_hash(batch.get())[i], std::stoull(hash, nullptr, 16)) << i;
-            EXPECT_EQ(carom_batch_duration(batch.get())[i], carom_record_duration(record.get()));
-            EXPECT_EQ(static_cast<std::size_t>(carom_batch_events(batch.get())[i]),
-                      carom_record_event_count(record.get()));
-            EXPECT_EQ(carom_batch_status(batch.get())[i], CAROM_SHOT_AT_REST);
+            EXPECT_EQ(hashes[i], std::stoull(hash, nullptr, 16)) << i;
+            EXPECT_EQ(duration[i], carom_record_duration(record.get()));
+            EXPECT_EQ(static_cast<std::size_t>(events[i]), carom_record_event_count(record.get()));
+            EXPECT_EQ(status[i], CAROM_SHOT_AT_REST);
             EXPECT_STREQ(carom_batch_message(batch.get(), i), "");
             for (std::size_t ball = 0; ball < 2; ++ball) {
                 double rvw[9];
                 const char* state = nullptr;
                 ASSERT_EQ(carom_record_state(record.get(), ball, 1e9, rvw, &state), CAROM_OK);
-                EXPECT_EQ(carom_batch_x(batch.get())[2 * i + ball], rvw[0]);
-                EXPECT_EQ(carom_batch_y(batch.get())[2 * i + ball], rvw[1]);
-                EXPECT_EQ(carom_batch_pocket(batch.get())[2 * i + ball] >= 0,
-                          std::string(state) == "pocketed");
-                EXPECT_EQ(carom_batch_fell(batch.get())[2 * i + ball] >= 0, std::string(state) == "pocketed");
-                EXPECT_GE(carom_batch_cushions(batch.get())[2 * i + ball], 0);
+                EXPECT_EQ(xy[4 * i + 2 * ball], rvw[0]);
+                EXPECT_EQ(xy[4 * i + 2 * ball + 1], rvw[1]);
+                EXPECT_EQ(pocket[2 * i + ball] >= 0, std::string(state) == "pocketed");
+                EXPECT_EQ(fell[2 * i + ball] >= 0, std::string(state) == "pocketed");
             }
         }
     }
     const BatchPtr cut = many(scene.get(), {}, {}, 2, 1, 0.5);
-    EXPECT_EQ(carom_batch_status(cut.get())[1], CAROM_SHOT_TIME);
-    EXPECT_EQ(carom_batch_duration(cut.get())[1], 0.5);
+    EXPECT_EQ(column<std::uint8_t>(cut.get(), "status", CAROM_UINT8, 1)[1], CAROM_SHOT_TIME);
+    EXPECT_EQ(column<double>(cut.get(), "duration", CAROM_FLOAT64, 1)[1], 0.5);
 }
 
 TEST(CApiBatch, ShotsBeyondTheArraysAreRefused) {
@@ -117,10 +133,15 @@ TEST(CApiBatch, BadArgumentsAreNamed) {
               CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_simulate_many(scene.get(), 0, 0, nullptr, nullptr, -1.0, 1, 0, &batch), CAROM_OK);
     EXPECT_EQ(carom_batch_shot_count(batch), 0u);
-    EXPECT_EQ(carom_batch_hash(batch), nullptr);
+    EXPECT_EQ(carom_batch_column(batch, "hash", nullptr, nullptr), nullptr);
+    EXPECT_STREQ(carom_last_error(), "hash was not requested; set `hashes` to 1");
+    EXPECT_EQ(carom_batch_column(batch, "x", nullptr, nullptr), nullptr);
+    EXPECT_STREQ(carom_last_error(),
+                 "no column is called \"x\"; there are status, duration, events, first_hit, contacts, "
+                 "approach_cushions, xy, pocket, fell, cushions, hash");
+    EXPECT_NE(carom_batch_column(batch, "xy", nullptr, nullptr), nullptr);
     carom_batch_free(batch);
-    EXPECT_EQ(carom_batch_status(nullptr), nullptr);
-    EXPECT_EQ(carom_batch_x(nullptr), nullptr);
+    EXPECT_EQ(carom_batch_column(nullptr, "xy", nullptr, nullptr), nullptr);
     EXPECT_STREQ(carom_batch_message(nullptr, 3), "");
     carom_batch_free(nullptr);
 }

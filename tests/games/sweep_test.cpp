@@ -30,12 +30,13 @@ TEST(Sweep, ColumnsHaveTheirKindsAndValues) {
     EXPECT_EQ(
         names,
         "shot ,cue.speed m/s,stop.events ,physics.cushion ,cue.aim_deg degrees,cue.elevation_deg degrees,"
-        "outcome ,duration s,events ,first_contact ,contacts ,cushions ,pocketed ,cue.x m,cue.y m,cue.pocket "
-        ",ball.2.x m,ball.2.y m,ball.2.pocket ,message ,travel(cue) ,pocketed ,");
+        "status ,duration s,events ,first_hit ,contacts ,approach_cushions ,cue.x m,cue.y m,"
+        "cue.pocket ,cue.fell ,cue.cushions ,ball.2.x m,ball.2.y m,ball.2.pocket ,ball.2.fell ,"
+        "ball.2.cushions ,message ,travel(cue) ,pocketed ,");
     for (std::size_t k = 0; k < kinds.size(); ++k) EXPECT_EQ(sweep.columns()[1 + k].kind, kinds[k]) << k;
     constexpr std::size_t kShots = 3;
     ShotStatus status[kShots] = {ShotStatus::kAtRest, ShotStatus::kFailed, ShotStatus::kEvents};
-    double duration[kShots] = {1.5, 0, 2}, place[2 * kShots] = {1, 2, 0, 0, 3, 4};
+    double duration[kShots] = {1.5, 0, 2}, xy[4 * kShots] = {1, -1, 2, -2, 0, 0, 0, 0, 3, -3, 4, -4};
     std::int64_t events[kShots] = {7, 0, 8};
     std::int32_t hit[kShots] = {1, -1, -1}, none[kShots] = {0, 0, 0};
     std::int32_t pocket[2 * kShots] = {0, -1, -1, -1, kOffTable, 0}, fell[2 * kShots] = {0, -1, -1, -1, 1, 0};
@@ -43,8 +44,8 @@ TEST(Sweep, ColumnsHaveTheirKindsAndValues) {
     SweptShots shots;
     shots.first = 40;
     shots.count = kShots;
-    shots.outcomes = {status, duration, events, hit,  none,    none,   place,
-                      place,  1,        pocket, fell, nullptr, nullptr};
+    std::int32_t cushions[2 * kShots] = {5, 6, 0, 0, 7, 8};
+    shots.outcomes = {status, duration, events, hit, none, none, xy, pocket, fell, cushions, nullptr};
     for (const ListedValue* speed : {&two, &more, &more})
         shots.draws.insert(shots.draws.end(), {speed, &three, &smooth, 80.5, std::int64_t{1}});
     using Texts = std::vector<std::string>;
@@ -62,10 +63,10 @@ TEST(Sweep, ColumnsHaveTheirKindsAndValues) {
         return text;
     };
     EXPECT_EQ(row(0),
-              "40|2|3|smooth|80.5|1|at_rest|1.5|7|ball.2|0|0|cue|1|1|p1|2|2||"
+              "40|2|3|smooth|80.5|1|at_rest|1.5|7|ball.2|0|0|1|-1|p1|0|5|2|-2||-1|6|"
               "|1.25||");
-    EXPECT_EQ(row(1), "41|2.5|3|smooth|80.5|1|failed|-|-|-|-|-|-|-|-|-|-|-|-|it fell over|-|-|");
-    EXPECT_EQ(row(2), "42|2.5|3|smooth|80.5|1|events|2|8||0|0|ball.2;cue|3|3|out|4|4|p1||nan|cue;ball.2|");
+    EXPECT_EQ(row(1), "41|2.5|3|smooth|80.5|1|failed|-|-|-|-|-|-|-|-|-|-|-|-|-|-|-|it fell over|-|-|");
+    EXPECT_EQ(row(2), "42|2.5|3|smooth|80.5|1|events|2|8||0|0|3|-3|out|1|7|4|-4|p1|0|8||nan|cue;ball.2|");
 }
 
 TEST(Sweep, AMeasureThatDoesNotApplyIsNamed) {
@@ -74,7 +75,7 @@ TEST(Sweep, AMeasureThatDoesNotApplyIsNamed) {
                       measures, &games::kEightBall);
     Batch batch(2, 2);
     try {
-        sweep.play(0, 2, kernel::best_isa(), {}, batch.arrays());
+        sweep.play(0, 2, kernel::best_isa(), {}, batch);
         ADD_FAILURE() << "eight-ball with two balls";
     } catch (const MeasureError& error) {
         EXPECT_EQ(std::string(error.what()).rfind("foul: ", 0), 0u) << error.what();

@@ -124,7 +124,9 @@ def test_solve_finds_the_pot(draw_scene):
                                     '"1" in pocketed and not scratch', *rules, "--shots", 3000, "--json"))
     assert told["solutions"][0]["values"] == best.values
     assert told["solutions"][0]["interval"] == list(best.interval)
-    assert told["solutions"][0]["exact"] == round(best.exact_success * best.shots)
+    assert told["solutions"][0]["exact_success"] == best.exact_success
+    assert told["solutions"][0]["falls"] == [fall._asdict() for fall in best.falls]
+    assert told["solutions"][0]["costs"] == [cost._asdict() for cost in best.costs]
     assert told["searches"] == list(best.searches)
     assert len(repr(best).splitlines()) <= 10
     assert sum(fall.share for fall in best.falls if fall.ball == "1") >= best.success - 1e-12
@@ -213,7 +215,7 @@ def test_shots_are_tables(draw_scene):
 def test_a_repr_is_short_with_shapes_and_units(break_scene):
     shots = carom.simulate_many(break_scene, shots=1000, max_events=2, hashes=True, times=[0.0])
     record = carom.simulate(break_scene)
-    for thing, words in ((shots, ("1000 shots of 16 balls", "(1000, 16, 2) m", "duration [s]")),
+    for thing, words in ((shots, ("1000 shots of 16 balls", "xy [m] (1000, 16, 2)", "duration [s]")),
                          (record, ("16 balls (", "events", " s, at_rest")),
                          (break_scene, ("1.270 x 2.540 m", "16 balls ("))):
         assert len(repr(thing).splitlines()) <= 10 and all(word in repr(thing) for word in words), repr(thing)

@@ -44,7 +44,7 @@ def test_columns_match_the_program(tmp_path, name, threads):
     assert len(rows) == count
     all_the_same(header, rows, {name: values.tolist() if isinstance(values, np.ndarray) else values for name,
                                 values in columns.items()})
-    assert set(columns["outcome"]) >= {"at_rest"}
+    assert set(columns["status"]) >= {"at_rest"}
     part = sweep.columns(scene, rules, count, seed=4, first=20, last=45)
     for column, values in part.items():
         np.testing.assert_array_equal(values, columns[column][20:45])
@@ -84,7 +84,7 @@ def test_a_table_has_the_columns_and_their_origin(draw_scene, tmp_path):
     columns = sweep.columns(draw_scene, rules, 80, seed=2)
     table = sweep.table(draw_scene, rules, 80, seed=2)
     assert table.column_names == list(columns)
-    assert set(table["outcome"].to_pylist()) == {"at_rest", "invalid"}
+    assert set(table["status"].to_pylist()) == {"at_rest", "invalid"}
     for name, values in columns.items():
         values = values.tolist() if isinstance(values, np.ndarray) else values
         wanted = [None if isinstance(value, float) and np.isnan(value) else value for value in values]

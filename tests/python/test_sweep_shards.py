@@ -192,9 +192,9 @@ def test_failed_shots_are_rows_and_are_counted(tmp_path):
     done = sweep.run(plan, tmp_path, threads=1)
     assert done.outcomes["failed"] > 0 and done.outcomes["failed"] + done.outcomes["time"] == 8
     rows = sweep.open(tmp_path).to_table().to_pylist()
-    assert [row["outcome"] == "failed" for row in rows] == [
+    assert [row["status"] == "failed" for row in rows] == [
         "reached its limit of steps" in row["message"] for row in rows]
-    assert all((row["duration"] is None) == (row["outcome"] == "failed") for row in rows)
+    assert all((row["duration"] is None) == (row["status"] == "failed") for row in rows)
 
 
 def test_a_reduction_matches_the_rows_and_merges_in_order(client):

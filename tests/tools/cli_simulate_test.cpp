@@ -120,16 +120,18 @@ TEST_F(CliSimulate, JsonHasTheDocumentedShape) {
     const ProcessResult result = run({"--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
-    ASSERT_EQ(json.size(), 5u);
+    ASSERT_EQ(json.size(), 9u);
+    EXPECT_EQ(json.at("first_hit"), "1");
     EXPECT_GT(json.at("duration").get<double>(), 1.0);
     EXPECT_GT(json.at("events").get<int>(), 5);
     EXPECT_EQ(json.at("hash").get<std::string>() + "\n", run({"--hash"}).out);
     ASSERT_EQ(json.at("balls").size(), 3u);
     for (const Json& ball : json.at("balls")) {
-        ASSERT_EQ(ball.size(), 6u);
+        ASSERT_EQ(ball.size(), 8u);
         const std::string state = ball.at("state");
         EXPECT_TRUE(state == "stationary" || state == "pocketed") << state;
-        EXPECT_EQ(ball.at("pocket").is_string(), state == "pocketed");
+        EXPECT_EQ(ball.at("pocket") != "", state == "pocketed");
+        EXPECT_EQ(ball.at("fell") >= 0, state == "pocketed");
         for (const char* key : {"position", "velocity", "spin"}) {
             ASSERT_EQ(ball.at(key).size(), 3u);
             for (const Json& number : ball.at(key)) EXPECT_TRUE(number.is_number());

@@ -43,13 +43,15 @@ TEST(Formats, ThePageOfSceneFilesMatchesTheProgram) {
 TEST(Formats, TheTypesOfTheInterfaceMatchTheirRows) {
     EXPECT_TRUE(test::read_source("docs/reference/types.md") == interface::types_page())
         << "docs/reference/types.md" << kStale;
-    const std::string classes = test::read_source("python/carom/_types.py"),
-                      printed = interface::types_for_python();
-    const std::regex block("# begin (\\w+)\n[^]*?# end \\1\n");
-    for (std::sregex_iterator it(printed.begin(), printed.end(), block), end; it != end; ++it)
-        EXPECT_NE(classes.find(it->str()), classes.npos) << "python/carom/_types.py: " << (*it)[1] << kStale;
-    EXPECT_NE(test::read_source("web/npm/index.d.ts").find(interface::types_for_typescript()), classes.npos)
-        << "web/npm/index.d.ts" << kStale;
+    const std::string sources = test::read_source("python/carom/_types.py") +
+                                test::read_source("python/carom/_simulate.py") +
+                                test::read_source("web/npm/index.d.ts"),
+                      printed = interface::types_for_python() + interface::types_for_typescript();
+    const std::regex block(" *(#|//) begin (\\w+)\n[^]*?\n *\\1 end \\2\n");
+    std::size_t blocks = 0;
+    for (std::sregex_iterator it(printed.begin(), printed.end(), block), end; it != end; ++it, ++blocks)
+        EXPECT_NE(sources.find(it->str()), sources.npos) << (*it)[2] << kStale;
+    EXPECT_EQ(blocks, interface::types().size() + 6);
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ test("a shot has events, states, an outcome and a record", () => {
   const one = shot.stateAt(shot.balls[0], 0.3);
   assert.deepEqual(one.position, [...all.numbers.subarray(9 * shot.balls.length, 9 * shot.balls.length + 3)]);
   assert.ok(STATES.includes(one.state));
-  assert.equal(shot.outcome.stopped, "at_rest");
+  assert.equal(shot.outcome.status, "at_rest");
   assert.equal(shot.outcome.balls.length, shot.balls.length);
   assert.throws(() => shot.stateAt("nobody", 0), RangeError);
   assert.ok(shot.after().balls.length <= shot.balls.length);
@@ -188,7 +188,7 @@ test("many shots equal the single shots", () => {
   for (let i = 0; i < 3; ++i) {
     const shot = simulate(scene.with({"cue.speed": speeds[i], "cue.aim_deg": aims[i]}));
     assert.equal(batch.hash[i].toString(16).padStart(16, "0"), shot.hash);
-    assert.equal(batch.x[i * batch.balls], shot.outcome.balls[0].x);
+    assert.equal(batch.xy[2 * i * batch.balls], shot.outcome.balls[0].position[0]);
   }
   assert.equal(carom.STATUSES[batch.status[3]], "invalid");
   assert.equal(batch.messages[0].shot, 3);

@@ -93,7 +93,7 @@ test("a shot is played, stepped and followed by the next", skip, async () => {
   await browser.until(`!document.body.classList.contains("aiming")`);
   await browser.key(" ", "Space");
   await browser.picture("play_watching");
-  const rest = await value("caromPlay.shot().outcome.balls.map(({x, y}) => [x, y])");
+  const rest = await value("caromPlay.shot().outcome.balls.map(({position}) => position.slice(0, 2))");
   await value("caromPlay.show(1e9)");
   await press("Next shot");
   await settled();

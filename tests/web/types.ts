@@ -25,5 +25,5 @@ export async function tour(): Promise<number> {
   shot.hash = "";
   // @ts-expect-error: no such limit
   simulate(scene, {minutes: 3});
-  return state.length + numbers.length + met.length + many.x.length + wrong.length;
+  return state.length + numbers.length + met.length + many.xy.length + wrong.length;
 }

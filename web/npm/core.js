@@ -317,10 +317,8 @@ export function simulate(scene, {until = -1, seconds = 60, events = 1e6} = {}) {
   return new Shot(call("carom_simulate", scene.handle, until, seconds, events), scene);
 }
 
-const ARRAYS = {status: [Uint8Array, 0], duration: [Float64Array, 0], events: [BigInt64Array, 0],
-  firstHit: [Int32Array, 0], contacts: [Int32Array, 0], approachCushions: [Int32Array, 0],
-  x: [Float64Array, 1], y: [Float64Array, 1], pocket: [Int32Array, 1], fell: [Int32Array, 1],
-  cushions: [Int32Array, 1], hash: [BigUint64Array, 0]};
+const TYPES = {uint8: Uint8Array, int32: Int32Array, int64: BigInt64Array, uint64: BigUint64Array,
+  float64: Float64Array};
 
 export function simulateMany(scene, columns, {hash = false} = {}) {
   expectOf(Scene, "scene", scene);
@@ -337,11 +335,8 @@ export function simulateMany(scene, columns, {hash = false} = {}) {
   const {arrays, ...result} = JSON.parse(
     call("carom_simulate_many", scene.handle, JSON.stringify(keys), shots, values, hash ? 1 : 0));
   const batch = new Held("carom_free_batch");
-  for (const [name, [Type, each]] of Object.entries(ARRAYS)) {
-    if (name === "hash" && !hash) continue;
-    const count = each ? result.shots * result.balls : result.shots;
-    result[name] = count > 0 ? new Type(wasm.memory.buffer, arrays[name], count).slice() : new Type(0);
-  }
+  for (const {name, type, at, count} of arrays)
+    result[name] = new TYPES[type](wasm.memory.buffer, at, count).slice();
   batch.free();
   return {...result, ids: scene.balls.map((ball) => ball.id)};
 }

@@ -124,26 +124,28 @@ export interface ShotEvent {
   balls?: string[];
 }
 
+/** The outcomes of one shot (see Batch): a ball or a pocket is its id, "" for none; "out": off the table. */
 export interface Outcome {
-  stopped: "at_rest" | "time" | "events" | "endless";
-  /** The ball that the struck ball meets first. */
-  firstHit: string | null;
-  /** Number of balls it meets. */
+  // begin outcome
+  status: string;
+  duration: number;
+  events: number;
+  first_hit: string;
   contacts: number;
-  /** Number of cushions it meets before its second ball. */
-  approachCushions: number;
+  approach_cushions: number;
+  // end outcome
   balls: {
     id: string;
-    /** At the end [m]. */
-    x: number;
-    y: number;
-    /** Id of its pocket. */
-    pocket: string | null;
-    offTable: boolean;
-    /** 0 for the ball that fell first, 1, ..., or -1. */
+    /** At the end: [m], [m/s], [rad/s]. */
+    state: BallState;
+    position: [number, number, number];
+    velocity: [number, number, number];
+    spin: [number, number, number];
+    // begin ball_outcome
+    pocket: string;
     fell: number;
-    /** How often it met a cushion or a jaw. */
     cushions: number;
+    // end ball_outcome
   }[];
 }
 
@@ -196,24 +198,31 @@ export interface Batch {
   ids: string[];
   /** Why a shot has no result. */
   messages: {shot: number; message: string}[];
-  /** One for each shot: an index into STATUSES. */
+  // begin outcomes
+  /** (n) index of the status at the end */
   status: Uint8Array;
-  /** [s] */
+  /** (n) [s] until its end */
   duration: Float64Array;
+  /** (n) in its record */
   events: BigInt64Array;
-  /** Index of a ball, or -1. */
-  firstHit: Int32Array;
+  /** (n) index of the ball that the struck ball hits first, or -1 */
+  first_hit: Int32Array;
+  /** (n) balls that it hits */
   contacts: Int32Array;
-  approachCushions: Int32Array;
-  /** The final position for each shot and ball, the balls of the first shot first [m]. */
-  x: Float64Array;
-  y: Float64Array;
-  /** Index of the pocket, -2 for a ball that has left the table, or -1. */
+  /** (n) cushions that it hits before its second ball, or in all; one that it touches at the start counts
+   * after it has left it */
+  approach_cushions: Int32Array;
+  /** (n, b, 2) [m] at the end; of a pocketed ball, its pocket; NaN if it was left out */
+  xy: Float64Array;
+  /** (n, b) index of the pocket that holds it; -1: none; -2: it has left the table */
   pocket: Int32Array;
+  /** (n, b) 0 for the first ball that falls, 1 for the next, ..., or -1 */
   fell: Int32Array;
+  /** (n, b) how often it hits a cushion or a jaw */
   cushions: Int32Array;
-  /** With `hash: true`. */
+  /** (n) of the record, on request */
   hash?: BigUint64Array;
+  // end outcomes
 }
 
 /** Simulates many shots of one scene, in which these numbers differ: {"cue.speed": [1, 2, 3]}. */

@@ -18,6 +18,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/verify.h"
 #include "carom/games/measures.h"
+#include "carom/interface/shape.h"
 #include "page/event_sentence.h"
 #include "web.h"
 
@@ -31,30 +32,6 @@ constexpr kernel::Isa kIsa = kernel::Isa::kScalar;
 /// JSON has no NaN: null.
 Json number(double x) {
     return std::isfinite(x) ? Json(x) : Json(nullptr);
-}
-
-Json outcome_json(const Record& record, const Outcome& outcome) {
-    const auto ball_id = [&](int ball) {
-        return ball < 0 ? Json(nullptr) : Json(record.tracks[static_cast<std::size_t>(ball)].id);
-    };
-    Json balls = Json::array();
-    for (std::size_t i = 0; i < outcome.balls.size(); ++i) {
-        const BallOutcome& ball = outcome.balls[i];
-        const bool held = ball.pocket >= 0;
-        balls.push_back(
-            {{"id", record.tracks[i].id},
-             {"x", ball.position.x()},
-             {"y", ball.position.y()},
-             {"pocket", held ? Json(record.table.pockets[static_cast<std::size_t>(ball.pocket)].id) : Json()},
-             {"offTable", ball.pocket == kOffTable},
-             {"fell", ball.fell},
-             {"cushions", ball.cushions}});
-    }
-    return {{"stopped", words(outcome.stopped).word},
-            {"firstHit", ball_id(outcome.first_hit)},
-            {"contacts", outcome.contacts},
-            {"approachCushions", outcome.approach_cushions},
-            {"balls", balls}};
 }
 
 Json events_json(const Record& record) {
@@ -92,26 +69,16 @@ Json events_json(const Record& record) {
 }
 
 Json many_json(const Batch& batch) {
-    const auto at = [](const auto& list) { return reinterpret_cast<std::uintptr_t>(list.data()); };
-    Json messages = Json::array();
+    Json messages = Json::array(), arrays = Json::array();
     for (const Batch::Message& message : batch.messages)
         messages.push_back({{"shot", message.shot}, {"message", message.text}});
-    return {{"shots", batch.shots},
-            {"balls", batch.balls},
-            {"messages", messages},
-            {"arrays",
-             {{"status", at(batch.status)},
-              {"duration", at(batch.duration)},
-              {"events", at(batch.events)},
-              {"firstHit", at(batch.first_hit)},
-              {"contacts", at(batch.contacts)},
-              {"approachCushions", at(batch.approach_cushions)},
-              {"x", at(batch.x)},
-              {"y", at(batch.y)},
-              {"pocket", at(batch.pocket)},
-              {"fell", at(batch.fell)},
-              {"cushions", at(batch.cushions)},
-              {"hash", at(batch.hash)}}}};
+    for (const OutcomeColumn& column : kOutcomeColumns)
+        if (const void* const array = column.array(batch))
+            arrays.push_back({{"name", column.name},
+                              {"type", name(column.type)},
+                              {"at", reinterpret_cast<std::uintptr_t>(array)},
+                              {"count", batch.shots * column.each(batch.balls)}});
+    return {{"shots", batch.shots}, {"balls", batch.balls}, {"messages", messages}, {"arrays", arrays}};
 }
 
 }  // namespace
@@ -154,7 +121,8 @@ CAROM_WEB int carom_shot_hash(const WebShot* shot) {
     return guarded([&] { give(nullptr, shot->record.hash()); });
 }
 CAROM_WEB int carom_shot_outcome(const WebShot* shot) {
-    return guarded([&] { give(nullptr, dumped(outcome_json(shot->record, shot->outcome))); });
+    return guarded(
+        [&] { give(nullptr, dumped(interface::value_of(shot->outcome, shot->record, shot->scene))); });
 }
 CAROM_WEB void carom_free_shot(WebShot* shot) {
     delete shot;

@@ -357,7 +357,7 @@ typedef enum carom_shot_status {
  * table). `values` contains key_count x shots numbers: all of the first key, then all of the second. Every
  * shot has the results of carom_simulate, bit for bit, whatever the number of threads (0: one for each core).
  * A shot that is invalid or fails has its status, the others are played, and the call returns CAROM_OK.
- * `hashes`: 1 if carom_batch_hash is wanted, otherwise 0. `until` as in carom_simulate. On failure (an
+ * `hashes`: 1 if "hash" is wanted, otherwise 0. `until` as in carom_simulate. On failure (an
  * unknown key) *batch is NULL. `scene` need not be valid before its numbers are set. */
 CAROM_API carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t key_count,
                                            const char* const* keys, const double* values, double until,
@@ -367,30 +367,20 @@ CAROM_API void carom_batch_free(carom_batch* batch); /* NULL is allowed */
 CAROM_API size_t carom_batch_shot_count(const carom_batch* batch);
 CAROM_API size_t carom_batch_ball_count(const carom_batch* batch);
 
-/* Arrays of shot_count numbers, valid as long as the batch exists. A shot without a result has 0, or -1 for
- * a ball. */
-CAROM_API const uint8_t* carom_batch_status(const carom_batch* batch);  /* a carom_shot_status */
-CAROM_API const double* carom_batch_duration(const carom_batch* batch); /* [s] */
-CAROM_API const int64_t* carom_batch_events(const carom_batch* batch);  /* number of events */
-CAROM_API const int32_t* carom_batch_first_hit(
-    const carom_batch* batch); /* first ball that the struck ball hits, or -1 */
-CAROM_API const int32_t* carom_batch_contacts(
-    const carom_batch* batch); /* number of balls it hits, each counted once */
-CAROM_API const int32_t* carom_batch_approach_cushions(
-    const carom_batch* batch); /* number of cushions it hits before its second ball, or in the whole shot */
-/* The hash of carom_record_hash as a number; NULL unless it was requested. */
-CAROM_API const uint64_t* carom_batch_hash(const carom_batch* batch);
+typedef enum carom_type {
+    CAROM_UINT8 = 0,
+    CAROM_INT32 = 1,
+    CAROM_INT64 = 2,
+    CAROM_UINT64 = 3,
+    CAROM_FLOAT64 = 4 /* double */
+} carom_type;
 
-/* Arrays of shot_count x ball_count numbers: the balls of the first shot in the order of the scene, then
- * those of the second. */
-CAROM_API const double* carom_batch_x(const carom_batch* batch); /* at the end [m] */
-CAROM_API const double* carom_batch_y(const carom_batch* batch); /* at the end [m] */
-CAROM_API const int32_t* carom_batch_pocket(
-    const carom_batch* batch); /* index of its pocket, -2 if it has left the table, or -1 */
-CAROM_API const int32_t* carom_batch_fell(
-    const carom_batch* batch); /* 0 for the ball that fell first, 1, ..., or -1 */
-CAROM_API const int32_t* carom_batch_cushions(
-    const carom_batch* batch); /* how often it hit a cushion or a jaw */
+/* An array of outcomes by its name: "status" (a carom_shot_status), "duration", "events", "xy", ...;
+ * docs/reference/types.md lists them. It contains shot_count x *each numbers of the type *type, the numbers
+ * of the first shot first, and is valid as long as the batch exists. `type` and `each` may be NULL. NULL,
+ * with carom_last_error, for an unknown name, and for "hash" unless it was requested. */
+CAROM_API const void* carom_batch_column(const carom_batch* batch, const char* name, carom_type* type,
+                                         size_t* each);
 
 /* Why a shot has no result; "" if it has one. Valid as long as the batch exists. */
 CAROM_API const char* carom_batch_message(const carom_batch* batch, size_t shot);

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
-#include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -42,50 +43,17 @@ std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,
     return numbers;
 }
 
-template <class T>
-void fill(T* array, std::size_t count, T value, std::size_t stride = 1) {
-    for (std::size_t i = 0; array != nullptr && i < count; ++i) array[i * stride] = value;
+/// The outcome of a shot that removed balls: those present are at these places in the scene.
+Outcome with_removed(Outcome outcome, const std::vector<int>& present, std::size_t balls) {
+    std::vector<BallOutcome> all(balls);
+    for (std::size_t i = 0; i < present.size(); ++i) all[present[i]] = outcome.balls[i];
+    outcome.balls = std::move(all);
+    if (outcome.first_hit >= 0) outcome.first_hit = present[outcome.first_hit];
+    return outcome;
 }
 
-/// The values of a shot without a result, or of a removed ball.
-void clear(const BatchArrays& out, std::size_t shot, std::size_t balls, double place) {
-    const std::size_t at = shot * balls;
-    const auto from = [](auto* array, std::size_t first) { return array ? array + first : nullptr; };
-    fill(from(out.duration, shot), 1, 0.0);
-    fill(from(out.events, shot), 1, std::int64_t{0});
-    fill(from(out.first_hit, shot), 1, -1);
-    fill(from(out.contacts, shot), 1, 0);
-    fill(from(out.approach_cushions, shot), 1, 0);
-    fill(from(out.hash, shot), 1, std::uint64_t{0});
-    fill(from(out.x, at * out.place_stride), balls, place, out.place_stride);
-    fill(from(out.y, at * out.place_stride), balls, place, out.place_stride);
-    fill(from(out.pocket, at), balls, -1);
-    fill(from(out.fell, at), balls, -1);
-    fill(from(out.cushions, at), balls, 0);
-}
-
-/// @param balls  of the scene; `present` lists those in the outcome, or is null if it has all
-void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std::size_t balls,
-          const std::vector<int>* present) {
-    const auto put = [](auto* array, std::size_t at, const auto& value) {
-        if (array != nullptr) array[at] = value;
-    };
-    const auto ball_of = [present](int i) { return present != nullptr && i >= 0 ? (*present)[i] : i; };
-    put(out.duration, shot, outcome.duration);
-    put(out.events, shot, outcome.events);
-    put(out.first_hit, shot, ball_of(outcome.first_hit));
-    put(out.contacts, shot, outcome.contacts);
-    put(out.approach_cushions, shot, outcome.approach_cushions);
-    put(out.hash, shot, outcome.hash);
-    for (int i = 0; i < static_cast<int>(outcome.balls.size()); ++i) {
-        const BallOutcome& ball = outcome.balls[i];
-        const std::size_t at = shot * balls + static_cast<std::size_t>(ball_of(i));
-        put(out.x, at * out.place_stride, ball.position.x());
-        put(out.y, at * out.place_stride, ball.position.y());
-        put(out.pocket, at, ball.pocket);
-        put(out.fell, at, ball.fell);
-        put(out.cushions, at, ball.cushions);
-    }
+void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome) {
+    for (const OutcomeColumn& column : kOutcomeColumns) column.put(out, shot, outcome);
 }
 
 /// A thread of a batch: its simulators, and the balls of its last shot if some were removed.
@@ -197,13 +165,16 @@ struct Work {
     void play_one(Worker& worker, std::size_t shot) {
         const std::size_t balls = scene.ball.size();
         const ShotStatus status = play(worker, shot, simulate);
+        const Outcome& outcome = worker.last->outcome();
+        if (!has_result(status))
+            keep(out, shot, {.balls = std::vector<BallOutcome>(balls)});
+        else if (worker.last != &worker.whole)
+            keep(out, shot, with_removed(outcome, worker.present, balls));
+        else
+            keep(out, shot, outcome);
         if (out.status != nullptr) out.status[shot] = status;
-        const bool some = worker.last != &worker.whole;
-        if (!has_result(status) || some)
-            clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
         if (has_result(status)) {
-            keep(out, shot, worker.last->outcome(), balls, some ? &worker.present : nullptr);
-            if (options.judge) options.judge(shot, worker.last->outcome(), worker.last->record());
+            if (options.judge) options.judge(shot, outcome, worker.last->record());
         } else {
             add_message(shot, worker.last->message());
         }
@@ -251,37 +222,30 @@ struct Work {
 
 }  // namespace
 
-Batch::Batch(std::size_t n, std::size_t b, bool hash_wanted)
-    : shots(n),
-      balls(b),
-      status(n),
-      duration(n),
-      events(n),
-      first_hit(n),
-      contacts(n),
-      approach_cushions(n),
-      x(n * b),
-      y(n * b),
-      pocket(n * b),
-      fell(n * b),
-      cushions(n * b),
-      hash(hash_wanted ? n : 0) {}
+Batch::Batch(std::size_t n, std::size_t b, bool hash_wanted) : shots(n), balls(b) {
+    for (const OutcomeColumn& column : kOutcomeColumns) {
+        if (column.on_request && !hash_wanted) continue;
+        memory.push_back(std::make_unique<std::byte[]>(n * column.each(b) * column.size));
+        column.set_array(*this, memory.back().get());
+    }
+}
 
-BatchArrays Batch::arrays() {
-    BatchArrays out;
-    out.status = status.data();
-    out.duration = duration.data();
-    out.events = events.data();
-    out.first_hit = first_hit.data();
-    out.contacts = contacts.data();
-    out.approach_cushions = approach_cushions.data();
-    out.x = x.data();
-    out.y = y.data();
-    out.pocket = pocket.data();
-    out.fell = fell.data();
-    out.cushions = cushions.data();
-    if (!hash.empty()) out.hash = hash.data();
-    return out;
+ValueKind kind_of(const OutcomeColumn& column) {
+    if (std::string_view(column.unit).size() > 1) return ValueKind::kText;
+    return column.type == NumberType::kFloat64 ? ValueKind::kNumber : ValueKind::kWhole;
+}
+
+OutcomeValue value_of(const OutcomeColumn& column, const BatchArrays& of, std::size_t at,
+                      const Scene& scene) {
+    const double number = column.number(of, at);
+    const ValueKind kind = kind_of(column);
+    if (kind == ValueKind::kNumber) return number;
+    if (kind == ValueKind::kWhole) return static_cast<std::int64_t>(number);
+    if (column.unit == std::string_view("status")) return name(static_cast<ShotStatus>(number));
+    if (number == kOffTable) return "out";
+    if (number < 0) return "";
+    const auto index = static_cast<std::size_t>(number);
+    return column.unit == std::string_view("ball") ? scene.ball[index].id : scene.table.pockets[index].id;
 }
 
 void check_shots(std::size_t shots) {
@@ -318,8 +282,7 @@ Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const Batch
                     kernel::Isa isa, const BatchOptions& options) {
     check_shots(shots);
     Batch batch(shots, scene.ball.size(), options.hash);
-    const BatchArrays out = batch.arrays();
-    batch.messages = simulate_many(scene, shots, columns, isa, options, out);
+    batch.messages = simulate_many(scene, shots, columns, isa, options, batch);
     return batch;
 }
 

@@ -115,17 +115,10 @@ class Tables:
         played = played._replace(truncated=played.truncated | (over & ~played.terminated))
         shots = played.shots
         info: dict[str, NDArray[Any]] = {
-            "status": shots.status,
-            "events": shots.events,
-            "duration": shots.duration,
-            "first_hit": shots.first_hit,
-            "pocket": shots.pocket,
-            "cushions": shots.cushions,
-            "cue": played.cue,
-            "foul": played.foul,
-        }
-        if shots.hash is not None:
-            info["hash"] = shots.hash
+            name: getattr(shots, name)
+            for name in ("status", "events", "duration", "first_hit", "pocket", "cushions", "hash")
+            if getattr(shots, name) is not None}
+        info |= {"cue": played.cue, "foul": played.foul}
         return played, info
 
     def _as_asked(self, states: States, options: Mapping[str, Any]) -> States:

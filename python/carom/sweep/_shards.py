@@ -79,7 +79,7 @@ def _read(plan: Plan, shard: int, folder: str, columns: list[str] | None = None)
 
 
 def _outcomes(rows: pyarrow.Table) -> dict[str, int]:
-    return {pair["values"]: pair["counts"] for pair in rows["outcome"].value_counts().to_pylist()}
+    return {pair["values"]: pair["counts"] for pair in rows["status"].value_counts().to_pylist()}
 
 
 @checked
@@ -109,7 +109,7 @@ def run_shard(
             # Another worker may have made the shard, and `run` removed the unfinished file of this one.
             if not os.path.exists(path):
                 raise
-    outcomes = _outcomes(_read(plan, shard, name, ["outcome"]))
+    outcomes = _outcomes(_read(plan, shard, name, ["status"]))
     return {"shard": shard, "file": path, "played": played, "outcomes": outcomes}
 
 

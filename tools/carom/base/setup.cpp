@@ -105,13 +105,16 @@ SimulateOptions interruptible() {
     return options;
 }
 
-Record simulate_plan(const Plan& plan, SimulateOptions options) {
+Record simulate_plan(const Plan& plan, SimulateOptions options, Outcome* outcome) {
     ProgressLine line("simulating:");
     options.progress = [&line](std::size_t events, double time) {
         throw_if_interrupted();
         if (line.due()) line.show_text(fmt::format("{}, {:.3f} s", counted(events, "event"), time));
     };
-    Record record = simulate(plan, options);
+    Record record;
+    Outcome ignored;
+    RunBuffers buffers;
+    simulate(plan, buffers, outcome != nullptr ? *outcome : ignored, record, options);
     throw_if_interrupted();
     return record;
 }

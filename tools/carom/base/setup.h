@@ -42,7 +42,7 @@ Plan plan_scene(const std::string& path);
 SimulateOptions interruptible();
 
 /// Calls simulate() and shows a progress line. SIGINT ends the run. @throws SimulationError, Interrupted
-Record simulate_plan(const Plan& plan, SimulateOptions options);
+Record simulate_plan(const Plan& plan, SimulateOptions options, Outcome* outcome = nullptr);
 
 /// Reads a record from a file (.json), whose notes go to standard error, or simulates a scene.
 /// @throws SceneError, SimulationError, Interrupted

@@ -1,6 +1,7 @@
 // Many shots of one scene: outcomes instead of records, in memory that is allocated once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "carom/engine/plan.h"
@@ -104,51 +107,122 @@ struct BatchOptions {
     std::function<void(std::size_t shot, const std::string& message)> done{};
 };
 
-/// Destination of the outcomes of n shots of b balls: the caller's arrays of n or n x b elements, as in
-/// Batch. Null arrays are not filled.
+/// Destination of the outcomes of n shots of b balls: the caller's arrays, as kOutcomeColumns describes them.
+/// Null arrays are not filled.
 struct BatchArrays {
     ShotStatus* status = nullptr;
     double* duration = nullptr;
     std::int64_t* events = nullptr;
     std::int32_t *first_hit = nullptr, *contacts = nullptr, *approach_cushions = nullptr;
-    double *x = nullptr, *y = nullptr;
-    /// Step from one ball to the next in x and in y: 2 if x and y alternate.
-    std::size_t place_stride = 1;
+    double* xy = nullptr;
     std::int32_t *pocket = nullptr, *fell = nullptr, *cushions = nullptr;
     std::uint64_t* hash = nullptr;
 };
+
+enum class NumberType : std::uint8_t { kUint8, kInt32, kInt64, kUint64, kFloat64 };
+constexpr auto names_of(NumberType) {
+    return std::array{"uint8", "int32", "int64", "uint64", "float64"};
+}
+
+/// An outcome of shots as a column of numbers, under this name in C, Python, JavaScript and sweeps.
+struct OutcomeColumn {
+    const char* name;
+    const char* unit;  ///< "s", "m", "", or whose index the number is: "status", "ball", "pocket"
+    const char* meaning;
+    bool on_request = false;  ///< only with BatchOptions::hash
+    NumberType type{};
+    std::size_t size = 0;      ///< of a number [bytes]
+    std::size_t per_ball = 0;  ///< numbers of each ball; 0: one number of the shot
+    void* (*array)(const BatchArrays& of) = nullptr;
+    void (*set_array)(BatchArrays& of, void* array) = nullptr;
+    double (*number)(const BatchArrays& of, std::size_t at) = nullptr;
+    void (*put)(const BatchArrays& to, std::size_t shot, const Outcome& outcome) = nullptr;
+
+    /// Numbers of each shot: the balls are in the order of Scene::ball.
+    constexpr std::size_t each(std::size_t balls) const { return per_ball == 0 ? 1 : per_ball * balls; }
+};
+
+/// The column of a member of Outcome, or of each BallOutcome; of a place, x and y.
+template <auto kArray, auto kMember>
+constexpr OutcomeColumn outcome_column(const char* name, const char* unit, const char* meaning,
+                                       bool on_request = false) {
+    using Number = std::remove_pointer_t<std::remove_cvref_t<decltype(BatchArrays().*kArray)>>;
+    constexpr bool kOfBall = std::is_invocable_v<decltype(kMember), BallOutcome>;
+    constexpr bool kIsPlace = std::is_same_v<decltype(kMember), Vec3 BallOutcome::*>;
+    OutcomeColumn column{name, unit, meaning, on_request};
+    column.type = std::is_floating_point_v<Number> ? NumberType::kFloat64
+                  : sizeof(Number) == 1            ? NumberType::kUint8
+                  : sizeof(Number) == 4            ? NumberType::kInt32
+                  : std::is_signed_v<Number>       ? NumberType::kInt64
+                                                   : NumberType::kUint64;
+    column.size = sizeof(Number);
+    column.per_ball = std::size_t{kOfBall} + kIsPlace;
+    column.array = [](const BatchArrays& of) -> void* { return of.*kArray; };
+    column.set_array = [](BatchArrays& of, void* array) { of.*kArray = static_cast<Number*>(array); };
+    column.number = [](const BatchArrays& of, std::size_t at) {
+        return static_cast<double>((of.*kArray)[at]);
+    };
+    column.put = [](const BatchArrays& to, std::size_t shot, const Outcome& outcome) {
+        Number* at = to.*kArray;
+        if (at == nullptr) return;
+        if constexpr (kOfBall) at += shot * outcome.balls.size() * (1 + kIsPlace);
+        if constexpr (kIsPlace)
+            for (const BallOutcome& ball : outcome.balls) at = std::copy_n((ball.*kMember).data(), 2, at);
+        else if constexpr (kOfBall)
+            for (const BallOutcome& ball : outcome.balls) *at++ = ball.*kMember;
+        else
+            at[shot] = static_cast<Number>(outcome.*kMember);
+    };
+    return column;
+}
+
+/// A shot without a result has the numbers of Outcome() and BallOutcome().
+inline constexpr OutcomeColumn kOutcomeColumns[] = {
+    outcome_column<&BatchArrays::status, &Outcome::stopped>("status", "status", "at the end"),
+    outcome_column<&BatchArrays::duration, &Outcome::duration>("duration", "s", "until its end"),
+    outcome_column<&BatchArrays::events, &Outcome::events>("events", "", "in its record"),
+    outcome_column<&BatchArrays::first_hit, &Outcome::first_hit>("first_hit", "ball",
+                                                                 "that the struck ball hits first, or -1"),
+    outcome_column<&BatchArrays::contacts, &Outcome::contacts>("contacts", "", "balls that it hits"),
+    outcome_column<&BatchArrays::approach_cushions, &Outcome::approach_cushions>(
+        "approach_cushions", "",
+        "cushions that it hits before its second ball, or in all; one that it touches at the start counts "
+        "after it has left it"),
+    outcome_column<&BatchArrays::xy, &BallOutcome::position>(
+        "xy", "m", "at the end; of a pocketed ball, its pocket; NaN if it was left out"),
+    outcome_column<&BatchArrays::pocket, &BallOutcome::pocket>(
+        "pocket", "pocket", "that holds it; -1: none; -2: it has left the table"),
+    outcome_column<&BatchArrays::fell, &BallOutcome::fell>(
+        "fell", "", "0 for the first ball that falls, 1 for the next, ..., or -1"),
+    outcome_column<&BatchArrays::cushions, &BallOutcome::cushions>("cushions", "",
+                                                                   "how often it hits a cushion or a jaw"),
+    outcome_column<&BatchArrays::hash, &Outcome::hash>("hash", "", "of the record", true),
+};
+
+using OutcomeValue = std::variant<double, std::int64_t, std::string>;
+/// kText: the values are names, of a status, a ball or a pocket.
+ValueKind kind_of(const OutcomeColumn& column);
+/// A number of a column, or its name: "out" is the pocket of a ball off the table, "" no ball or no pocket.
+OutcomeValue value_of(const OutcomeColumn& column, const BatchArrays& of, std::size_t at, const Scene& scene);
 
 class BatchStopped : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot together, in the order
-/// of Scene::ball. A shot without a result is all 0, with -1 for balls and pockets.
-struct Batch {
+/// Outcomes of n shots of b balls, in arrays of its own.
+struct Batch : BatchArrays {
     Batch() = default;
     /// Arrays for n shots of b balls, to be filled. @param hash  whether to allocate `hash`
     Batch(std::size_t n, std::size_t b, bool hash = false);
-    BatchArrays arrays();
 
     std::size_t shots = 0, balls = 0;
-    std::vector<ShotStatus> status;       ///< n
-    std::vector<double> duration;         ///< n [s]
-    std::vector<std::int64_t> events;     ///< n
-    std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball hits, or -1
-    std::vector<std::int32_t> contacts;   ///< n: the number of balls that it hits
-    /// n: the number of cushions that it hits before the second ball, or in all
-    std::vector<std::int32_t> approach_cushions;
-    std::vector<double> x, y;            ///< n x b [m], at the end
-    std::vector<std::int32_t> pocket;    ///< n x b: index of the ball's pocket, kOffTable, or -1
-    std::vector<std::int32_t> fell;      ///< n x b: 0 for the ball that fell first, 1, ..., or -1
-    std::vector<std::int32_t> cushions;  ///< n x b: number of cushion and jaw hits
-    std::vector<std::uint64_t> hash;     ///< n, only with BatchOptions::hash: Outcome::hash
     struct Message {
         std::size_t shot;
         std::string text;  ///< why the shot has no result
     };
-    std::vector<Message> messages;  ///< in the order of the shots
+    std::vector<Message> messages;                     ///< in the order of the shots
+    std::vector<std::unique_ptr<std::byte[]>> memory;  ///< of the arrays
 };
 
 /// [-] The most shots in one batch: beyond it, array sizes would overflow.

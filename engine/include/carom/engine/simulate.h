@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -52,11 +53,12 @@ Record simulate(const Plan& plan, const SimulateOptions& options = {});
 inline constexpr int kOffTable = -2;
 
 struct BallOutcome {
-    Vec3 position = Vec3::Zero();  ///< at the end [m]; for a pocketed ball, the bottom of the pocket
-    int pocket = -1;               ///< index of its pocket, kOffTable, or -1
-    int fell = -1;                 ///< 0 for the first ball to fall, 1 for the next, ..., or -1
-    int cushions = 0;              ///< cushion and jaw hits: bounces, and starts of resting contacts
-    bool met = false;              ///< hit by the struck ball (Outcome::struck)
+    /// At the end [m]; for a pocketed ball, the bottom of the pocket.
+    Vec3 position = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    int pocket = -1;   ///< index of its pocket, kOffTable, or -1
+    int fell = -1;     ///< 0 for the first ball to fall, 1 for the next, ..., or -1
+    int cushions = 0;  ///< cushion and jaw hits: bounces, and starts of resting contacts
+    bool met = false;  ///< hit by the struck ball (Outcome::struck)
     bool operator==(const BallOutcome&) const = default;
 };
 
@@ -66,7 +68,8 @@ int struck_ball(const Scene& scene);
 /// The result of a shot without a record: final positions and event counts.
 struct Outcome {
     StopReason stopped = StopReason::kAtRest;
-    double duration = 0.0;    ///< [s]
+    /// [s]
+    double duration = std::numeric_limits<double>::quiet_NaN();
     std::int64_t events = 0;  ///< as in the record
     int clusters = 0;         ///< ball_cluster events
     int struck = -1;          ///< struck_ball()

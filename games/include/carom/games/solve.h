@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -25,23 +24,34 @@
 
 namespace carom::games {
 
-/// Standard deviations of a player's independent normal errors.
 struct Hand {
-    double aim_deg = 0.2;        ///< [degrees]
-    double speed = 0.03;         ///< of the speed [-]
-    double tip = 0.02;           ///< of the tip, sideways and up [ball radii]
-    double elevation_deg = 0.0;  ///< [degrees]
+    double aim_deg = 0.2, speed = 0.03, tip = 0.02, elevation_deg = 0.0;
     bool operator==(const Hand&) const = default;
 };
+constexpr auto rows_of(const Hand*) {
+    return described("Hand", "Standard deviations of a player's independent normal errors.",
+                     row<&Hand::aim_deg>("aim_deg", "Of the aim [degrees]."),
+                     row<&Hand::speed>("speed", "Of the cue's speed, as a fraction of it."),
+                     row<&Hand::tip>("tip", "Of the tip, sideways and up [ball radii]."),
+                     row<&Hand::elevation_deg>("elevation_deg", "Of the elevation [degrees]."))
+        .made_by_callers();
+}
 
-/// Standard deviations of a table's properties that a player does not know. Every trial draws them anew.
 struct Unknown {
-    double cloth = 0.05;   ///< of mu_s and of mu_r [-]
-    double rails = 0.02;   ///< of the restitution of cushions [-]
-    double places = 1e-4;  ///< of every ball along x and y, except racked ones [m]
-    double gaps = 2e-5;    ///< between racked balls [m]
+    double cloth = 0.05, rails = 0.02, places = 1e-4, gaps = 2e-5;
     bool operator==(const Unknown&) const = default;
 };
+constexpr auto rows_of(const Unknown*) {
+    return described("Unknown",
+                     "Standard deviations of a table's properties that a player does not know, drawn anew "
+                     "for every "
+                     "trial; all 0 for exact tables.",
+                     row<&Unknown::cloth>("cloth", "Of mu_s and of mu_r, as a fraction."),
+                     row<&Unknown::rails>("rails", "Of the restitution of the cushions, as a fraction."),
+                     row<&Unknown::places>("places", "Of every ball along x and y, except racked ones [m]."),
+                     row<&Unknown::gaps>("gaps", "Between racked balls [m]."))
+        .made_by_callers();
+}
 inline constexpr Unknown kExactTable{0.0, 0.0, 0.0, 0.0};
 
 /// The key of a choice that sets the speed of the struck ball instead of the cue's [m/s].
@@ -86,27 +96,41 @@ constexpr auto rows_of(const Share*) {
                      row<&Share::high>("high", "Of the interval."));
 }
 Share share_of(std::size_t part, std::size_t whole);
+/// The interval of a share of this number of shots.
+Share with_interval(double share, std::size_t shots);
+
+struct Fall {
+    std::string ball, pocket;
+    double share = 0.0;
+};
+constexpr auto rows_of(const Fall*) {
+    return described("Fall", "How often a ball falls into a pocket.", row<&Fall::ball>("ball", "Its id."),
+                     row<&Fall::pocket>("pocket", "Its id."),
+                     row<&Fall::share>("share", "Of the shots of the solution."));
+}
+
+struct Cost {
+    std::string input;
+    double by = 0.0;
+    std::string unit;
+    double less = 0.0, more = 0.0;
+    int shots = 0;
+};
+constexpr auto rows_of(const Cost*) {
+    return described("Cost", "The success if one input is off.",
+                     row<&Cost::input>("input", "Its key, or aim."), row<&Cost::by>("by", "The error."),
+                     row<&Cost::unit>("unit", "Of the error."),
+                     row<&Cost::less>("less", "Share of successes; NaN if no scene is valid there.").or_nan(),
+                     row<&Cost::more>("more", "The same in the other direction.").or_nan(),
+                     row<&Cost::shots>("shots", "In each direction."));
+}
 
 struct Solution {
     std::vector<double> values;  ///< in the order of the choices
     Scene scene;                 ///< the shot without errors
     std::size_t shots = 0, successes = 0;
-    std::size_t exact = 0;  ///< successes of as many shots on exact tables (kExactTable)
-    /// The number of these shots in which each ball fell into each pocket, the most frequent first.
-    struct Fall {
-        int ball, pocket;
-        std::size_t count;
-    };
-    std::vector<Fall> falls;
-    /// Successes of the first of these shots if one input is off by `by` in either direction.
-    struct Cost {
-        std::string input;
-        double by;
-        const char* unit;
-        std::size_t shots;  ///< in each direction
-        /// Empty if no scene is valid there, as with a ball inside a cushion.
-        std::optional<std::size_t> less, more;
-    };
+    std::size_t exact = 0;    ///< successes of as many shots on exact tables (kExactTable)
+    std::vector<Fall> falls;  ///< the most frequent first
     std::vector<Cost> costs;
 };
 

@@ -18,29 +18,15 @@
 namespace carom::games {
 
 struct SweepColumn {
-    enum class Of : std::uint8_t {
-        kShot,
-        kKey,
-        kOutcome,
-        kDuration,
-        kEvents,
-        kFirstContact,
-        kContacts,
-        kCushions,
-        kPocketed,
-        kX,
-        kY,
-        kPocket,
-        kMessage,
-        kMeasure
-    };
+    enum class Of : std::uint8_t { kShot, kKey, kOutcome, kPocketed, kMessage, kMeasure };
 
     std::string name;
     ValueKind kind;
     std::string unit;       ///< "" if it has none
     bool of_result;         ///< empty for shots without a result
     Of of;                  ///< the contents of the column
-    std::size_t which = 0;  ///< the number of the key, the ball or the measure
+    std::size_t which = 0;  ///< the key, the measure, or the number among those of a shot
+    const OutcomeColumn* outcome = nullptr;
 };
 
 /// A value of a row, of the column's kind; empty if the shot has none.
@@ -64,13 +50,13 @@ class Sweep {
 
     const Variation& variation() const { return variation_; }
     const std::vector<Measure>& measures() const { return measures_; }
-    /// shot, KEY..., outcome, duration, events, first_contact, contacts, cushions, pocketed,
-    /// ID.x, ID.y, ID.pocket..., message, MEASURE...
+    /// shot, KEY..., the outcomes of a shot, pocketed, the outcomes of each ball (ID.x, ID.y, ID.pocket,
+    /// ...), message, MEASURE...
     const std::vector<SweepColumn>& columns() const { return columns_; }
 
     /// Plays shots first, first + 1, ... A row depends only on the variation and the number of its shot.
     /// @param options  `judge` and `done` are not called
-    /// @param out  needs all arrays except `cushions` and `hash`
+    /// @param out  needs all arrays except those on request
     /// @param done  called by each thread after every shot, whose row is complete
     /// @throws MeasureError for a measure that does not apply to such shots, and as simulate_many
     SweptShots play(std::uint64_t first, std::size_t count, kernel::Isa isa, BatchOptions options,

@@ -18,6 +18,7 @@
 
 #include "carom/engine/row.h"
 #include "carom/engine/scene.h"
+#include "carom/engine/simulate.h"
 
 namespace carom::interface {
 
@@ -98,6 +99,8 @@ T read_as(const Value& value, const char* name = nullptr) {
     return out;
 }
 
+/// A shot of a scene: its outcomes by name, and the state of each ball at the end.
+Value value_of(const Outcome& outcome, const Record& record, const Scene& scene);
 /// The state before the first shot. @param options  keys of a state that are not defaults
 /// @throws std::invalid_argument
 Value new_state(const std::string& game, const Value& options);
@@ -106,9 +109,9 @@ Value new_state(const std::string& game, const Value& options);
 std::span<const Shape* const> types();
 /// The reference page of the types.
 std::string types_page();
-/// The blocks of python/carom/_types.py, between "# begin NAME" and "# end NAME".
+/// Blocks of Python, between "# begin NAME" and "# end NAME": of python/carom/_types.py and _simulate.py.
 std::string types_for_python();
-/// The block "types" of web/npm/index.d.ts.
+/// The same of TypeScript, with "//": of web/npm/index.d.ts.
 std::string types_for_typescript();
 
 /// A section of scene files, as an object with its keys.

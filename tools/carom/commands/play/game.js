@@ -58,7 +58,7 @@ function rackWords({decision, respots}, {outcome}, {corner, length}) {
   if (decision !== "rack fourteen") return "";
   const where = ({place: [, y]}) => ["head", "centre", "foot"].find((_, k) =>
     Math.abs(y - corner[1] - (k + 1) * length / 4) < 0.01);
-  const left = outcome.balls.filter(({id, pocket, offTable}) => id !== "cue" && !pocket && !offTable);
+  const left = outcome.balls.filter(({id, pocket}) => id !== "cue" && !pocket);
   const told = [...left.map(({id}) => id), "cue"].map((id) => {
     const back = respots.find(({ball}) => ball === id), spot = back && where(back);
     if (!back) return id === "cue" ? "" : ` ${sentence(named(id))} stays where it is.`;

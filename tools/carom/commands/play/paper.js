@@ -67,7 +67,7 @@ export function printShots(state) {
     const stroke = cue === null ? [] : [`Ball ${cue.ball} is struck at ${speed}`,
       `aim ${cue.aim_deg.toFixed(2)}°`, `tip ${offset(cue.side, "left", "right")} and ` +
       `${offset(cue.height, "above", "below")} the centre`, `cue raised by ${cue.elevation_deg.toFixed(1)}°`];
-    const fell = shot.outcome.balls.filter(({pocket}) => pocket).map(({id, pocket}) => `${id} in ${pocket}`);
+    const fell = shot.outcome.balls.filter(({fell}) => fell >= 0).map(({id, pocket}) => `${id} in ${pocket}`);
     paper.replaceChildren(drawnOnPaper(shot.motion, shape, styles, cue),
       make("p", {}, `${stroke.concat(fell).join(", ")}. ${shot.duration.toFixed(2)} s, hash ${shot.hash}.`));
   });

@@ -49,7 +49,7 @@ async function load() {
 /** Judges a shot that has ended, and reports it. */
 function conclude(state) {
   judge(state);
-  const {shot, verdict} = state, fell = shot.outcome.balls.filter((b) => b.pocket);
+  const {shot, verdict} = state, fell = shot.outcome.balls.filter((b) => b.fell >= 0);
   const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => named(b.id, state.scene.table.preset));
   const gone = ids.length > 0 ? ` In pockets: ${ids.join(", ")}.` : "";
   if (state.game && !verdict) return;

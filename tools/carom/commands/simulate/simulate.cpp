@@ -21,6 +21,7 @@
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "carom/games/measures.h"
+#include "carom/interface/shape.h"
 #include "commands/simulate/story.h"
 #include "report/csv.h"
 #include "report/table.h"
@@ -96,30 +97,16 @@ Table costs_by_kind(const Record& record) {
     return table;
 }
 
-std::string result_json(const Record& record, const std::vector<games::Measure>& measures) {
-    const auto numbers = [](const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); };
-    Json balls = Json::array();
-    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
-        const BallState s = record.state_at(static_cast<int>(i), record.duration);
-        Json pocket = nullptr;
-        if (s.pocket >= 0) pocket = record.table.pockets.at(s.pocket).id;
-        balls.push_back({{"id", record.tracks[i].id},
-                         {"state", name(s.state)},
-                         {"position", numbers(s.position)},
-                         {"velocity", numbers(s.velocity)},
-                         {"spin", numbers(s.spin)},
-                         {"pocket", pocket}});
-    }
+std::string result_json(const Scene& scene, const Record& record, const Outcome& outcome,
+                        const std::vector<games::Measure>& measures) {
+    Json all = interface::value_of(outcome, record, scene);
     Json kinds = Json::object();
     for (const Event& event : record.events) {
         Json& count = kinds[name(event.type)];
         count = count.is_null() ? 1 : count.get<int>() + 1;
     }
-    Json all = {{"duration", record.duration},
-                {"events", record.events.size()},
-                {"events_by_kind", kinds},
-                {"hash", record.hash()},
-                {"balls", balls}};
+    all["events_by_kind"] = kinds;
+    all["hash"] = record.hash();
     for (const games::Measure& measure : measures)
         all["measures"][measure.text()] = measured(measure, [&] { return measure_json(measure, record); });
     if (!record.costs.empty()) {
@@ -237,12 +224,13 @@ int run(const SimulateArgs& args) {
     options.profile = args.profile;
     options.until = args.until;
     const std::vector<games::Measure> measures = measures_of(args, plan.scene);
-    const Record record = simulate_plan(plan, options);
+    Outcome outcome;
+    const Record record = simulate_plan(plan, options, &outcome);
     write_files(args, record);
     const int status = args.verify ? verified(record, plan) : kOk;
     // --hash replaces the summary, so that the output is one line. JSON always contains the hash.
     if (args.json) {
-        print(result_json(record, measures));
+        print(result_json(plan.scene, record, outcome, measures));
         return status;
     }
     // Also with --quiet, and beside a file on standard output: it was asked for.

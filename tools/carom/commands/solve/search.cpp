@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/simulate.h"
+#include "carom/interface/shape.h"
 #include "report/sweep_plot.h"
 #include "report/table.h"
 
@@ -25,36 +27,18 @@ using Json = nlohmann::ordered_json;
 using games::Choice;
 using games::Solution;
 
-std::string pocket_of(const Scene& scene, int pocket) {
-    return scene.table.pockets[static_cast<std::size_t>(pocket)].id;
-}
-
 Json as_json(const Solution& solution, const std::vector<Choice>& choices) {
     const Share share = share_of(solution.successes, solution.shots);
-    Json values = Json::object(), falls = Json::array(), costs = Json::array();
+    Json values = Json::object();
     for (std::size_t k = 0; k < choices.size(); ++k) values[choices[k].key] = solution.values[k];
-    for (const Solution::Fall& fall : solution.falls)
-        falls.push_back({{"ball", solution.scene.ball[static_cast<std::size_t>(fall.ball)].id},
-                         {"pocket", pocket_of(solution.scene, fall.pocket)},
-                         {"count", fall.count},
-                         {"per_shot", share_of(fall.count, solution.shots).value}});
-    for (const Solution::Cost& cost : solution.costs) {
-        Json row{{"input", cost.input}, {"off_by", cost.by}, {"unit", cost.unit}, {"shots", cost.shots}};
-        for (const auto& part : {cost.less, cost.more}) {
-            row["successes"].push_back(part ? Json(*part) : Json());
-            row["success"].push_back(part ? Json(share_of(*part, cost.shots).value) : Json());
-        }
-        costs.push_back(row);
-    }
     return {{"success", share.value},
             {"interval", {share.low, share.high}},
             {"shots", solution.shots},
-            {"successes", solution.successes},
-            {"exact", solution.exact},
             {"values", values},
-            {"falls", falls},
-            {"costs", costs},
-            {"scene", scene_text(solution.scene)}};
+            {"falls", interface::value_of(solution.falls)},
+            {"costs", interface::value_of(solution.costs)},
+            {"scene", scene_text(solution.scene)},
+            {"exact_success", share_of(solution.exact, solution.shots).value}};
 }
 
 }  // namespace
@@ -175,28 +159,26 @@ std::string rates_text(const Solution& solution, const char* what, const SearchA
 std::string falls_text(const Solution& solution) {
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(6, solution.falls.size()); ++i) {
-        const Solution::Fall& fall = solution.falls[i];
-        const double share = share_of(fall.count, solution.shots).value;
-        if (share < 0.02) break;
-        text += fmt::format("{}{} into {} {:.1f} %", i == 0 ? "   falls " : ", ",
-                            solution.scene.ball[static_cast<std::size_t>(fall.ball)].id,
-                            pocket_of(solution.scene, fall.pocket), 100.0 * share);
+        const games::Fall& fall = solution.falls[i];
+        if (fall.share < 0.02) break;
+        text += fmt::format("{}{} into {} {:.1f} %", i == 0 ? "   falls " : ", ", fall.ball, fall.pocket,
+                            100.0 * fall.share);
     }
     return text.empty() ? "" : text + fmt::format("  of the same {}\n", counted(solution.shots, "shot"));
 }
 
 std::string costs_text(const Solution& solution) {
-    const auto part = [](const std::optional<std::size_t>& successes, std::size_t shots) {
-        if (!successes) return std::string("impossible");
-        const Share share = share_of(*successes, shots);
+    const auto part = [](double success, int shots) {
+        if (std::isnan(success)) return std::string("impossible");
+        const Share share = games::with_interval(success, static_cast<std::size_t>(shots));
         return fmt::format("{:.0f} % ({:.0f} to {:.0f})", 100.0 * share.value, 100.0 * share.low,
                            100.0 * share.high);
     };
     std::string text;
-    for (const Solution::Cost& cost : solution.costs)
+    for (const games::Cost& cost : solution.costs)
         text += fmt::format("   {} off by {:.3g} {}: -: {}, +: {}; of {} each\n", cost.input, cost.by,
                             cost.unit, part(cost.less, cost.shots), part(cost.more, cost.shots),
-                            counted(cost.shots, "shot"));
+                            counted(static_cast<std::size_t>(cost.shots), "shot"));
     return text;
 }
 

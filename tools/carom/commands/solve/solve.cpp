@@ -110,7 +110,7 @@ int run(const SolveArgs& args) {
                  {"searches", starts_json(starts)},
                  {"solutions", solutions_json(found, choices)}};
         for (const games::Exact& e : exact) {
-            Json row{{"miss_m", std::isfinite(e.refined.miss) ? Json(e.refined.miss) : Json()},
+            Json row{{"miss", std::isfinite(e.refined.miss) ? Json(e.refined.miss) : Json()},
                      {"shots", e.refined.shots},
                      {"trouble", e.refined.trouble}};
             if (e.solution) row["solution"] = solutions_json({*e.solution}, e.choices)[0];

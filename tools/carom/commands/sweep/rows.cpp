@@ -50,7 +50,7 @@ SweepBlock play_block(const games::Sweep& sweep, std::uint64_t first, std::size_
     SweepBlock block{Batch(count, sweep.variation().base().ball.size()), {}, std::vector<std::string>(count)};
     const std::lock_guard turn(playing);
     try {
-        block.shots = sweep.play(first, count, isa, options, block.batch.arrays(),
+        block.shots = sweep.play(first, count, isa, options, block.batch,
                                  [&](const games::SweptShots& shots, std::size_t shot) {
                                      block.rows[shot] = row_of(sweep, shots, shot);
                                  });
