@@ -37,7 +37,7 @@ for what, name in PAGES.items():
 
 # Between the marks; the methods of a class follow them. A new class is appended.
 for what, *paths in (("types-python", TYPES, ROOT / "python/carom/_simulate.py"),
-                     ("types-npm", ROOT / "web/npm/index.d.ts")):
+                     ("types-typescript", ROOT / "web/npm/index.d.ts")):
     fresh = {block[2]: block[0] for block in MARKED.finditer(printed_by(what))}
     for path in paths:
         path.write_text(MARKED.sub(lambda old: fresh.pop(old[2], old[0]), path.read_text()))

@@ -30,4 +30,11 @@ inline Cue cue_of(const std::string& id, const carom_cue& cue) {
     return c;
 }
 
+/// The caller's cue for the engine's.
+inline carom_cue cue_of(const Cue& cue) {
+    carom_cue c;
+    for (const auto& [theirs, ours] : kCueNumbers) c.*theirs = cue.*ours;
+    return c;
+}
+
 }  // namespace carom::c

@@ -11,11 +11,8 @@
 
 namespace carom::c {
 
-/// Becomes CAROM_BAD_ARGUMENT; what() names the invalid argument and the reason.
-class BadArgument : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
+/// Becomes CAROM_BAD_ARGUMENT; what() names the invalid argument and the reason. The library throws it, too.
+using BadArgument = std::invalid_argument;
 
 /// Stores the message of the exception that is being handled. @returns the corresponding status
 carom_status keep_error() noexcept;
@@ -36,16 +33,6 @@ void need(std::initializer_list<const void*> pointers);
 
 /// @throws BadArgument if there is no such index
 void check_index(std::size_t index, std::size_t count, const char* what);
-
-/// Turns the library's rejection of an argument into a bad argument of the caller.
-template <class Work>
-auto asked(Work&& work) {
-    try {
-        return work();
-    } catch (const std::invalid_argument& error) {
-        throw BadArgument(error.what());
-    }
-}
 
 /// Returns a new object to the caller, or NULL on failure.
 template <class T, class Make>

@@ -1,13 +1,9 @@
 // The contents of the C interface's opaque handles.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "carom/engine/batch.h"
 #include "carom/engine/record.h"
-#include "carom/games/player.h"
-#include "carom/games/rules.h"
+#include "carom/interface/shape.h"
 
 struct carom_scene {
     carom::Scene scene;
@@ -18,16 +14,20 @@ struct carom_record {
     carom::Scene scene;  // that was played
 };
 
-struct carom_verdict {
-    carom::games::Verdict verdict;
-    std::string record;  // hash of the record that was judged
-};
-
-struct carom_advice {
-    std::vector<carom::games::Advice> shots;
-    std::vector<std::string> words;
+struct carom_value {
+    carom::interface::Value value;
 };
 
 struct carom_batch {
     carom::Batch batch;
 };
+
+namespace carom::c {
+
+/// The part of a value at a path: "options[0].state.turn"; "" is the whole. @throws BadArgument
+const interface::Value& part_at(const carom_value* value, const char* path);
+
+/// @param json  null: an object without keys @throws BadArgument with `name`
+interface::Value json_of(const char* json, const char* name);
+
+}  // namespace carom::c

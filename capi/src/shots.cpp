@@ -54,12 +54,8 @@ carom_status carom_scene_parse(const char* text, const char* name, carom_scene**
 carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene) {
     return made(scene, [&](carom_scene& s) {
         need({table, balls});
-        try {
-            if (*table != '\0') s.scene.table = carom::make_table(table);
-            carom::use_balls(s.scene, balls);
-        } catch (const std::invalid_argument& error) {
-            throw BadArgument(error.what());
-        }
+        if (*table != '\0') s.scene.table = carom::make_table(table);
+        carom::use_balls(s.scene, balls);
         s.scene.file = "scene";
     });
 }
@@ -102,9 +98,7 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
 }
 
 void carom_cue_init(carom_cue* cue) {
-    if (cue == nullptr) return;
-    const carom::Cue c;
-    for (const auto& [theirs, ours] : kCueNumbers) cue->*theirs = c.*ours;
+    if (cue != nullptr) *cue = cue_of(carom::Cue{});
 }
 
 carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue) {

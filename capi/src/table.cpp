@@ -1,7 +1,7 @@
-// The C interface: tables and balls of a scene, and the data of a record that a game needs.
+// The C interface: places on a table, and the data of a record that a game needs.
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -20,61 +20,6 @@
 using namespace carom::c;
 
 namespace {
-
-constexpr double kDegrees = 57.295779513082321;
-
-carom_part part_of(const carom::Cushion& c) {
-    return {c.id.c_str(),
-            c.name.c_str(),
-            {c.from.x(), c.from.y()},
-            {c.to.x(), c.to.y()},
-            0.0,
-            c.height,
-            0.0,
-            0.0,
-            0};
-}
-
-template <class Round>
-carom_part part_of(const Round& r, double height) {
-    return {r.id.c_str(),
-            r.name.c_str(),
-            {r.center.x(), r.center.y()},
-            {r.center.x(), r.center.y()},
-            r.radius,
-            height,
-            0.0,
-            0.0,
-            0};
-}
-
-carom_part part_of(const carom::Jaw& jaw) {
-    carom_part part = part_of(jaw, jaw.height);
-    if (!jaw.is_arc()) return part;
-    part.from_deg = jaw.from_deg.value_or(0.0);
-    part.to_deg = jaw.to_deg.value_or(part.from_deg + 360.0);
-    part.inside = jaw.around() ? 1 : 0;
-    return part;
-}
-
-carom_part part_of(const carom::Table& table, carom_partner kind, size_t index) {
-    const auto of = [index](const auto& list, const char* what) -> const auto& {
-        check_index(index, list.size(), what);
-        return list[index];
-    };
-    switch (kind) {
-        case CAROM_CUSHION:
-            return part_of(of(table.cushions, "cushion"));
-        case CAROM_JAW:
-            return part_of(of(table.jaws, "jaw"));
-        case CAROM_POCKET:
-            return part_of(of(table.pockets, "pocket"), 0.0);
-        case CAROM_NO_PARTNER:
-        case CAROM_BALL:
-            break;
-    }
-    throw BadArgument("a part is a cushion, a jaw or a pocket");
-}
 
 /// A record that was read, with the scene that was played.
 void keep(carom_record& r, carom::Record record, const carom::Scene& scene) {
@@ -103,55 +48,6 @@ carom_status carom_scene_set(carom_scene* scene, const char* key, const char* va
         } catch (const carom::VariationError& error) {
             throw BadArgument(error.what());
         }
-    });
-}
-
-carom_status carom_scene_cue(const carom_scene* scene, carom_cue* cue, const char** ball) {
-    return guarded([&] {
-        need({scene, cue});
-        if (!scene->scene.cue) throw BadArgument("the scene has no cue; set one with carom_scene_set_cue");
-        for (const auto& [theirs, ours] : kCueNumbers) cue->*theirs = *scene->scene.cue.*ours;
-        if (ball != nullptr) *ball = scene->scene.cue->ball.c_str();
-    });
-}
-
-size_t carom_scene_ball_count(const carom_scene* scene) {
-    return scene != nullptr ? scene->scene.ball.size() : 0;
-}
-
-carom_status carom_scene_ball(const carom_scene* scene, size_t index, const char** id, double rvw[9],
-                              double* radius) {
-    return guarded([&] {
-        need({scene});
-        check_index(index, scene->scene.ball.size(), "ball");
-        const carom::BallStart& ball = scene->scene.ball[index];
-        if (id != nullptr) *id = ball.id.c_str();
-        if (rvw != nullptr) {
-            std::copy_n(ball.position.data(), 3, rvw);
-            std::copy_n(ball.velocity.data(), 3, rvw + 3);
-            std::copy_n(ball.spin.data(), 3, rvw + 6);
-        }
-        if (radius != nullptr) *radius = scene->scene.size_of(ball).R;
-    });
-}
-
-carom_status carom_scene_table(const carom_scene* scene, carom_table* table) {
-    return guarded([&] {
-        need({scene, table});
-        const carom::Table& t = scene->scene.table;
-        *table = {{t.corner.x(), t.corner.y()},
-                  t.width,
-                  t.length,
-                  t.cushions.size(),
-                  t.jaws.size(),
-                  t.pockets.size()};
-    });
-}
-
-carom_status carom_scene_part(const carom_scene* scene, carom_partner kind, size_t index, carom_part* part) {
-    return guarded([&] {
-        need({scene, part});
-        *part = part_of(scene->scene.table, kind, index);
     });
 }
 
@@ -193,21 +89,29 @@ carom_status carom_record_orientations(const carom_record* record, size_t count,
     });
 }
 
-carom_status carom_record_event_details(const carom_record* record, size_t index,
-                                        carom_event_details* details) {
+carom_status carom_record_events(const carom_record* record, size_t columns, const char* const* names,
+                                 double* numbers) {
     return guarded([&] {
-        need({record, details});
-        check_index(index, record->record.events.size(), "event");
-        const carom::Event& e = record->record.events[index];
-        const carom::EventDetails d = carom::details_of(record->record, index);
-        *details = {e.time,    static_cast<int32_t>(e.type),
-                    e.a,       static_cast<int32_t>(kind(e.type).partner),
-                    e.b,       {},
-                    {},        d.cut * kDegrees,
-                    d.closing, d.impulse,
-                    d.lost,    d.diamond};
-        std::copy_n(d.point.data(), 3, details->point);
-        std::copy_n(d.normal.data(), 3, details->normal);
+        need({record});
+        if (columns > 0) need({names});
+        if (columns > 0 && !record->record.events.empty()) need({numbers});
+        const std::span<const carom::EventColumn> all = carom::event_columns();
+        std::vector<std::size_t> wanted;
+        for (size_t k = 0; k < columns; ++k) {
+            need({names[k]});
+            const std::string_view name = names[k];
+            const auto found =
+                std::find_if(all.begin(), all.end(), [&](const auto& column) { return column.name == name; });
+            if (found == all.end())
+                throw BadArgument("no column \"" + std::string(name) +
+                                  "\"; `carom describe events` lists them");
+            wanted.push_back(static_cast<std::size_t>(found - all.begin()));
+        }
+        std::vector<double> row(all.size());
+        for (std::size_t event = 0; event < record->record.events.size(); ++event) {
+            carom::event_row(record->record, event, row);
+            for (const std::size_t column : wanted) *numbers++ = row[column];
+        }
     });
 }
 
@@ -226,9 +130,7 @@ carom_status carom_record_hits(const carom_record* record, carom_hit* hits) {
         if (carom_record_hit_count(record) > 0) need({hits});
         for (std::size_t k = 0; k < events.size(); ++k)
             carom::each_hit(events[k], record->record.hits(events[k]), [&](const carom::Hit& hit) {
-                *hits++ = {
-                    hit.time, hit.impulse, static_cast<int32_t>(k), hit.a, static_cast<int32_t>(hit.partner),
-                    hit.b};
+                *hits++ = {hit.time, hit.impulse, static_cast<int32_t>(k), hit.a, name(hit.partner), hit.b};
             });
     });
 }

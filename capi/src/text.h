@@ -10,14 +10,6 @@
 
 namespace carom::c {
 
-/// Fills a field of a struct; a text that is too long is cut.
-template <std::size_t kSize>
-void put_text(char (&field)[kSize], const std::string& text) {
-    const std::size_t part = std::min(text.size(), kSize - 1);
-    std::memcpy(field, text.data(), part);
-    field[part] = '\0';
-}
-
 /// Writes up to `size` bytes of what `make` returns, including the final 0. @return the length without it, or
 /// (size_t)-1 on failure
 template <class Make>

@@ -157,7 +157,7 @@ double hit_aim_deg(const Vec2& way, double both, double hit) {
 
 PocketLine line_from(const Table& table, const Pocket& pocket, const Vec2& from, double R) {
     PocketLine line;
-    line.pocket = static_cast<int>(&pocket - table.pockets.data());
+    line.pocket = pocket.id;
     const Vec2 to = pocket.center - from;
     const double distance = length(to);
     if (!(distance > pocket.radius)) return line;
@@ -193,9 +193,12 @@ std::vector<PocketLine> pocket_lines(const Scene& scene, std::string_view ball, 
     const BallStart& start = detail::ball_of(scene, ball);
     const Vec2 from = planar(start.position);
     const double R = scene.size_of(start).R;
+    const int struck = index_of(scene.ball, cue_ball);
+    const double both = R + (struck < 0 ? scene.balls.R : scene.size_of(scene.ball[struck]).R);
     std::vector<PocketLine> lines;
     for (const Pocket& pocket : scene.table.pockets) {
         PocketLine line = detail::line_from(scene.table, pocket, from, R);
+        line.ghost = ghost_ball(from, line.towards, both);
         double nearest = std::numeric_limits<double>::infinity();
         for (const BallStart& other : scene.ball) {
             if (line.width_deg == 0.0 || other.id == ball || other.id == cue_ball) continue;

@@ -209,7 +209,7 @@ std::optional<double> off_line(const Record& record, int ball, double from, cons
 Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::string_view pocket) {
     AimTrial trial(scene, how, ball, pocket);
     const PocketLine line = pocket_lines(scene, ball, how.ball)[static_cast<std::size_t>(trial.pocket)];
-    const Vec2 ghost = ghost_ball(trial.place, line.towards, trial.both);
+    const Vec2& ghost = line.ghost;
     Aim aim;
     aim.geometric_deg = direction_deg(ghost - trial.cue_place);
     aim.cut_deg = cut_angle_deg(trial.cue_place, ghost, line.towards);
@@ -251,12 +251,12 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
         const Played played = played_at(trial, best.aim_deg, &line.towards);
         aim.why = played.why;
         if (played.potted)
-            aim.cue = *trial.scene.cue;
+            aim.aim_deg = trial.scene.cue->aim_deg;
         else if (aim.why.empty())
             aim.why = std::abs(best.off) > near ? "no aim sends the ball there"
                                                 : "the ball runs towards the pocket but does not fall";
     }
-    if (aim.cue) aim.why.clear();
+    if (aim.aim_deg) aim.why.clear();
     aim.shots = trial.shots;
     return aim;
 }
@@ -286,7 +286,7 @@ std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_vie
             });
             if (played_at(trial, best.aim_deg, nullptr).potted) {
                 Aim route;
-                route.cue = *trial.scene.cue;
+                route.aim_deg = trial.scene.cue->aim_deg;
                 route.cushion = cushion;
                 routes.push_back(route);
             }

@@ -56,19 +56,13 @@ bool must_place(const Record& record, const Option& option, const std::string& c
     });
 }
 
-}  // namespace
-
-const char* cue_ball(const State& state) {
-    const bool own = state.game->struck == GameRules::Struck::kOwn;
-    return own ? detail::own_ball(state.turn) : "cue";
+void check_record(const Record& record, const Option& option) {
+    if (!option.record.empty() && option.record != record.hash())
+        throw std::invalid_argument("the verdict belongs to another record; give the record that was judged");
 }
 
-std::string struck_next(const State& state, std::span<const std::string> balls) {
-    const std::vector<std::string> may = legal(state, balls).cue_balls;
-    return detail::is_in(cue_ball(state), may) ? cue_ball(state) : may.front();
-}
-
-bool may_place(const Record& record, const Option& option, const Vec2& place) {
+/// may_place() without the check of the record.
+bool is_allowed(const Record& record, const Option& option, const Vec2& place) {
     const std::string cue = cue_ball(option.state);
     const int index = ball_of(record, option, cue);
     for (const Respot& back : option.respots) ball_of(record, option, back.ball);
@@ -90,7 +84,25 @@ bool may_place(const Record& record, const Option& option, const Vec2& place) {
     return is_free(place, R, others);
 }
 
+}  // namespace
+
+const char* cue_ball(const State& state) {
+    const bool own = state.game->struck == GameRules::Struck::kOwn;
+    return own ? detail::own_ball(state.turn) : "cue";
+}
+
+std::string struck_next(const State& state, std::span<const std::string> balls) {
+    const std::vector<std::string> may = legal(state, balls).cue_balls;
+    return detail::is_in(cue_ball(state), may) ? cue_ball(state) : may.front();
+}
+
+bool may_place(const Record& record, const Option& option, const Vec2& place) {
+    check_record(record, option);
+    return is_allowed(record, option, place);
+}
+
 Vec2 free_place(const Record& record, const Option& option, const std::optional<Vec2>& wanted) {
+    check_record(record, option);
     const Vec2 from = wanted.value_or(head_spot(record.table));
     const double step = radius_of(record, option, cue_ball(option.state)) / 4.0;
     // Rings of a lattice: whole numbers, whose distances have the same order on every processor.
@@ -103,13 +115,14 @@ Vec2 free_place(const Record& record, const Option& option, const std::optional<
                     places.push_back({far, x, y});
         std::sort(places.begin(), places.end());
         for (const auto& [far, x, y] : places)
-            if (Vec2 place = from + step * Vec2(x, y); may_place(record, option, place)) return place;
+            if (Vec2 place = from + step * Vec2(x, y); is_allowed(record, option, place)) return place;
     }
     throw std::invalid_argument("there is no free place for the cue ball");
 }
 
 Scene table_after(const Scene& scene, const Record& record, const Option& option,
                   const std::optional<Vec2>& place) {
+    check_record(record, option);
     if (option.rerack())
         throw std::invalid_argument("the balls are racked again; use the scene of a new break");
     if (option.state.over) throw std::invalid_argument("the game is over; there is no next shot");
@@ -117,7 +130,7 @@ Scene table_after(const Scene& scene, const Record& record, const Option& option
     for (const Respot& back : option.respots) ball_of(record, option, back.ball);
     if (!place && must_place(record, option, cue))
         throw std::invalid_argument("the cue ball is in hand; give its place");
-    if (place && !may_place(record, option, *place))
+    if (place && !is_allowed(record, option, *place))
         throw std::invalid_argument(std::string("the cue ball may not be placed there (in hand: ") +
                                     name(option.state.in_hand) + "), or the place is not free");
     const Scene rest = scene_after(scene, record);

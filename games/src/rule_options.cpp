@@ -25,11 +25,10 @@ std::string_view chosen(const State& state, std::string_view key) {
 
 }  // namespace
 
-std::vector<RuleOption> rule_options() {
-    std::vector<RuleOption> all;
-    for (const Game game : all_of(Game{}))
-        all.insert(all.end(), game->info.options.begin(), game->info.options.end());
-    return all;
+std::vector<GameInfo> all_games() {
+    std::vector<GameInfo> list;
+    for (const Game game : all_of(Game{})) list.push_back(info_of(game));
+    return list;
 }
 
 void set_rule(State& state, std::string_view option) {

@@ -160,4 +160,8 @@ Verdict judge(const State& state, const Record& record, const Call& call) {
     return verdict;
 }
 
+void name_record(Verdict& verdict, const Record& record) {
+    for (Option& option : verdict.options) option.record = record.hash();
+}
+
 }  // namespace carom::games

@@ -1,6 +1,8 @@
-// The types of the interface as a reference page and as Python classes.
+// The types of the interface as a reference page, Python classes and TypeScript interfaces.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <string>
@@ -8,6 +10,7 @@
 
 #include "carom/engine/batch.h"
 #include "carom/games/rules.h"
+#include "carom/games/solve.h"
 #include "carom/interface/shape.h"
 
 namespace carom::interface {
@@ -15,8 +18,8 @@ namespace {
 
 using Kind = Shape::Kind;
 
-std::string quoted_names(const Shape& choice) {
-    return fmt::format("\"{}\"", fmt::join(choice.names, "\", \""));
+std::string quoted_names(const Shape& choice, const char* between = ", ") {
+    return fmt::format("\"{}\"", fmt::join(choice.names, fmt::format("\"{}\"", between)));
 }
 
 /// A type in words: "2: 0 to 9".
@@ -51,31 +54,45 @@ std::string in_words(const Shape& shape, const Shape::Limits& limits) {
     }());
 }
 
-/// A type in Python. @param fixed  lists are tuples
-std::string in_python(const Shape& shape, bool fixed) {
+/// How a language writes types; {} is the inner type.
+struct Language {
+    const char *truth, *whole, *number, *text, *null, *game, *choice, *between, *list, *array;
+};
+constexpr Language kPython{"bool",     "int",         "float", "str",      "None",
+                           "GameName", "Literal[{}]", ", ",    "list[{}]", "tuple[{}]"};
+/// Of values that callers make, which can be hashed.
+constexpr Language kFixedPython = [] {
+    Language fixed = kPython;
+    fixed.list = "tuple[{}, ...]";
+    return fixed;
+}();
+constexpr Language kTypeScript{"boolean", "number", "number", "string", "null",
+                               "Game",    "{}",     " | ",    "{}[]",   "[{}]"};
+
+std::string in_code(const Shape& shape, const Language& of) {
     switch (shape.kind) {
         case Kind::kTruth:
-            return "bool";
+            return of.truth;
         case Kind::kWhole:
-            return "int";
+            return of.whole;
         case Kind::kNumber:
-            return "float";
+            return of.number;
         case Kind::kText:
-            return "str";
+            return of.text;
         case Kind::kChoice:
-            return &shape == &shape_of<games::Game>() ? "GameName" : "Literal[" + quoted_names(shape) + "]";
+            if (&shape == &shape_of<games::Game>()) return of.game;
+            return fmt::format(fmt::runtime(of.choice), quoted_names(shape, of.between));
         case Kind::kList:
-            return fixed ? "tuple[" + in_python(shape.item(), fixed) + ", ...]"
-                         : "list[" + in_python(shape.item(), fixed) + "]";
+            return fmt::format(fmt::runtime(of.list), in_code(shape.item(), of));
         case Kind::kOptional:
-            return in_python(shape.item(), fixed) + " | None";
+            return in_code(shape.item(), of) + " | " + of.null;
         case Kind::kType:
             return shape.name;
         case Kind::kArray:
             break;
     }
-    const std::vector<std::string> items(shape.count, in_python(shape.item(), fixed));
-    return fmt::format("tuple[{}]", fmt::join(items, ", "));
+    const std::vector<std::string> items(shape.count, in_code(shape.item(), of));
+    return fmt::format(fmt::runtime(of.array), fmt::join(items, ", "));
 }
 
 std::string python_default(const Value& value) {
@@ -119,14 +136,19 @@ std::string in_words(const OutcomeColumn& column) {
 
 std::string types_page() {
     std::string text =
-        "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), JavaScript, and Python's "
-        "`carom` "
-        "and `carom.games`. Missing keys have defaults.\n";
+        "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), C (`carom_value`), "
+        "JavaScript, and Python's `carom` and `carom.games`. Missing keys have defaults.\n";
+    const std::array kElsewhere = {&shape_of<games::Hand>(), &shape_of<games::Unknown>(),
+                                   &shape_of<games::Fall>(), &shape_of<games::Cost>()};
     for (const Shape* type : types()) {
-        // For the interactive page; people read `carom describe games`.
-        if (type == &shape_of<games::GameInfo>() || type == &shape_of<games::RuleOption>()) continue;
-        text += fmt::format("\n## {}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", type->name,
-                            type->meaning);
+        // For Python; people read the options of a search.
+        if (std::find(kElsewhere.begin(), kElsewhere.end(), type) != kElsewhere.end()) continue;
+        text += fmt::format("\n## {}\n\n{}\n", type->name, type->meaning);
+        if (type->rows.front().set != nullptr) {
+            text += "Its keys are [those of the file](scene_format.md).\n";
+            continue;
+        }
+        text += "\n| key | value | meaning |\n|---|---|---|\n";
         for (const Shape::Member& row : type->rows)
             text +=
                 fmt::format("| `{}` | {} | {} |\n", row.key, in_words(row.shape(), row.limits), row.meaning);
@@ -134,16 +156,48 @@ std::string types_page() {
     text +=
         "\n## Outcomes\n\nOf n shots of b balls: arrays in C (`carom_batch_column`), Python (`Shots`) and "
         "JavaScript "
-        "(`Batch`), balls in the order of the scene. In sweeps and data frames each ball has columns `ID.x`, "
-        "`ID.y`, `ID.pocket`, ..., and numbers that stand for a status, a ball or a pocket are names. "
-        "Without a "
-        "result, `duration` and `xy` are NaN.\n\n| name | type | meaning |\n|---|---|---|\n";
+        "(`Batch`). Sweeps and data frames have `ID.x`, ..., and names for indices. No result: NaN, 0, "
+        "-1.\n\n"
+        "| name | meaning |\n|---|---|\n";
     for (const OutcomeColumn& column : kOutcomeColumns)
-        text += fmt::format("| `{}` | {} | {} |\n", column.name, name(column.type), in_words(column));
+        text += fmt::format("| `{}` | {} |\n", column.name, in_words(column));
     return text;
 }
 
-std::string types_for_npm() {
+std::string types_for_python() {
+    std::string text = "# begin GameName\n" +
+                       wrapped("GameName: TypeAlias = Literal[" + quoted_names(shape_of<games::Game>()) + "]",
+                               ", ", std::string(30, ' ')) +
+                       "# end GameName\n";
+    for (const Shape* type : types()) {
+        text += fmt::format("\n\n# begin {0}\nclass {0}(NamedTuple):\n", type->name) +
+                wrapped(fmt::format("    \"\"\"{}\"\"\"", type->meaning), " ", "    ") + "\n";
+        // Texts and computed members at the end have defaults: a caller need not give them.
+        const auto required = std::find_if(type->rows.rbegin(), type->rows.rend(), [](const auto& row) {
+            return !row.is_computed() && row.shape().kind != Kind::kText;
+        });
+        for (const Shape::Member& row : type->rows) {
+            std::string member =
+                fmt::format("    {}: {}", row.key,
+                            in_code(row.shape(), type->is_made_by_callers ? kFixedPython : kPython));
+            if (type->is_made_by_callers && !row.is_needed)
+                member += " = " + python_default(type->default_value().at(row.key));
+            else if (!type->is_made_by_callers && &row > &*required)
+                member += row.shape().kind == Kind::kTruth ? " = False" : " = \"\"";
+            text += wrapped(fmt::format("    #: {}", row.meaning), " ", "    #: ") +
+                    wrapped(member, ", ", "        ");
+        }
+        text += fmt::format("# end {}\n", type->name);
+    }
+    text += "    # begin outcomes\n";
+    for (const OutcomeColumn& column : kOutcomeColumns)
+        text += wrapped(fmt::format("    #: {}", in_words(column)), " ", "    #: ") +
+                fmt::format("    {}: NDArray[np.{}]{}\n", column.name, name(column.type),
+                            column.on_request ? " | None" : "");
+    return text + "    # end outcomes\n";
+}
+
+std::string types_for_typescript() {
     std::string many, shot, ball;
     for (const OutcomeColumn& column : kOutcomeColumns) {
         std::string array = name(column.type);
@@ -156,38 +210,24 @@ std::string types_for_npm() {
                 fmt::format("{}{}: {};\n", column.per_ball == 0 ? "  " : "    ", column.name,
                             kind_of(column) == ValueKind::kText ? "string" : "number");
     }
-    return fmt::format(
-        "  // begin outcomes\n{}  // end outcomes\n  // begin outcome\n{}  // end outcome\n    // begin "
-        "ball_outcome\n{}    // end ball_outcome\n",
-        many, shot, ball);
-}
-
-std::string types_for_python() {
-    std::string text = "# begin GameName\n" +
-                       wrapped("GameName: TypeAlias = Literal[" + quoted_names(shape_of<games::Game>()) + "]",
-                               ", ", std::string(30, ' ')) +
-                       "# end GameName\n";
+    std::string text =
+        "// begin types\n" +
+        wrapped("export type Game = " + quoted_names(shape_of<games::Game>(), " | ") + ";", " | ", "  ");
     for (const Shape* type : types()) {
-        text += fmt::format("\n\n# begin {0}\nclass {0}(NamedTuple):\n", type->name) +
-                wrapped(fmt::format("    \"\"\"{}\"\"\"", type->meaning), " ", "    ") + "\n";
-        for (const Shape::Member& row : type->rows) {
-            std::string member =
-                fmt::format("    {}: {}", row.key, in_python(row.shape(), type->is_made_by_callers));
-            if (type->is_made_by_callers && !row.is_needed)
-                member += " = " + python_default(type->default_value().at(row.key));
-            // A caller who makes such a value need not compute them.
-            if (row.computed != nullptr) member += row.shape().kind == Kind::kTruth ? " = False" : " = \"\"";
-            text += wrapped(fmt::format("    #: {}", row.meaning), " ", "    #: ") +
-                    wrapped(member, ", ", "        ");
-        }
-        text += fmt::format("# end {}\n", type->name);
+        text += "\n" + wrapped(fmt::format("/** {} */", type->meaning), " ", " * ") +
+                fmt::format("export interface {} {{\n", type->name);
+        for (const Shape::Member& row : type->rows)
+            text +=
+                wrapped(fmt::format("  /** {} */", row.meaning), " ", "   * ") +
+                wrapped(fmt::format("  {}: {};", row.key, in_code(row.shape(), kTypeScript)), " | ", "    ");
+        text += "}\n";
     }
-    text += "    # begin outcomes\n";
-    for (const OutcomeColumn& column : kOutcomeColumns)
-        text += wrapped(fmt::format("    #: {}", in_words(column)), " ", "    #: ") +
-                fmt::format("    {}: NDArray[np.{}]{}\n", column.name, name(column.type),
-                            column.on_request ? " | None" : "");
-    return text + "    # end outcomes\n";
+    return text + "// end types\n" +
+           fmt::format(
+               "  // begin outcomes\n{}  // end outcomes\n  // begin outcome\n{}  // end outcome\n    // "
+               "begin "
+               "ball_outcome\n{}    // end ball_outcome\n",
+               many, shot, ball);
 }
 
 }  // namespace carom::interface

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "carom/engine/printable.h"
@@ -55,8 +58,8 @@ Value write_rows(const Shape& shape, const void* from) {
     Value all = Value::object();
     for (const Shape::Member& row : shape.rows) {
         const Shape& of = row.shape();
-        all[row.key] = row.computed != nullptr
-                           ? row.computed(from)
+        all[row.key] = row.get != nullptr
+                           ? row.get(from)
                            : of.write(of, row.in(const_cast<void*>(from)));  // NOLINT: it is only read
     }
     return all;
@@ -75,6 +78,7 @@ void read_rows(const Shape& shape, const Value& value, const Part& part, const S
         }
         ++known;
         if (row.in != nullptr) row.shape().read(row.shape(), *found, inner, row.limits, row.in(to));
+        if (row.set != nullptr) row.set(to, *found, inner);
     }
     if (known < value.size()) {
         for (const auto& item : value.items()) {
@@ -129,6 +133,43 @@ double number_of(const Value& value, const Part& part, bool may_be_nan) {
 std::string text_of(const Value& value, const Part& part) {
     if (!value.is_string()) refuse(part, "expected a text");
     return value.get<std::string>();
+}
+
+std::string meaning_of(const Key& key) {
+    return *key.range.unit == '\0' ? key.meaning : fmt::format("{} [{}]", key.meaning, key.range.unit);
+}
+
+Value value_of_field(const FieldValue& field) {
+    return std::visit(
+        [](const auto& value) -> Value {
+            if constexpr (std::is_same_v<decltype(value), const std::monostate&>)
+                return {};
+            else
+                return value;
+        },
+        field);
+}
+
+FieldValue field_of(const Key& key, const Value& value, const Part& part) {
+    if (key.kind == Key::Kind::kNumber) return number_of(value, part);
+    if (key.kind == Key::Kind::kText) {
+        const std::vector<const char*> names = key.names();
+        const std::string text = text_of(value, part);
+        if (!names.empty() && std::find(names.begin(), names.end(), text) == names.end())
+            refuse(part, fmt::format("expected one of {}", fmt::join(names, ", ")));
+        return text;
+    }
+    std::vector<double> list;
+    const Shape& numbers = shape_of<std::vector<double>>();
+    numbers.read(numbers, value, part, {}, &list);
+    if (list.size() != key.count()) refuse(part, fmt::format("expected a list of {} numbers", key.count()));
+    return list;
+}
+
+const Shape& (*shape_of_field(const Key& key))() {
+    if (key.kind == Key::Kind::kNumber) return shape_of<double>;
+    if (key.kind == Key::Kind::kText) return shape_of<std::string>;
+    return key.count() == 2 ? shape_of<std::array<double, 2>> : shape_of<std::array<double, 3>>;
 }
 
 }  // namespace carom::interface::shapes

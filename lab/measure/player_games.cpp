@@ -121,8 +121,8 @@ void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro,
         if (!opening) count.fouls += !shot.verdict.fouls.empty();
         if (std::getenv("TELL") != nullptr)
             fmt::print(
-                "player {}: {}, foretold {:.2f}: {}{}\n", before.turn + 1,
-                words_of(shot.advice, shot.table.table), shot.advice.makes.value, made ? "made" : "missed",
+                "player {}: {}, foretold {:.2f}: {}{}\n", before.turn + 1, shot.advice.words,
+                shot.advice.makes.value, made ? "made" : "missed",
                 shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0].foul));
         if (first) count.breaks += made && !shot.taken.state.over;
         first = false;

@@ -99,7 +99,7 @@ class Foul(NamedTuple):
         "jump shot", "snooker behind the free ball", "miss", "opponent's cue ball hit",
         "touching ball played into"]
     #: "WPA 6.1"; "" if the game has no such rule.
-    rule: str
+    rule: str = ""
 # end Foul
 
     @property
@@ -134,6 +134,8 @@ class Option(NamedTuple):
     rerack: bool = False
     #: The next shot in words.
     text: str = ""
+    #: Hash of the judged record; "": unknown.
+    record: str = ""
 # end Option
 
 
@@ -175,7 +177,7 @@ class RuleOption(NamedTuple):
     #: The first one is the default.
     values: list[str]
     #: Its meaning.
-    what: str
+    what: str = ""
 # end RuleOption
 
 
@@ -215,6 +217,150 @@ class GameInfo(NamedTuple):
 # end GameInfo
 
 
+# begin Cue
+class Cue(NamedTuple):
+    """A strike: [cue] of a scene file."""
+
+    #: kind of cue: its `mass`, `end_mass` and `restitution`
+    preset: str
+    #: id of the ball that is struck
+    ball: str
+    #: of the cue [m/s]
+    speed: float
+    #: 0 is +x, 90 is +y [degrees]
+    aim_deg: float
+    #: of the butt; above 0 it lifts the ball; `"auto"`: the least that clears rails and balls [degrees]
+    elevation_deg: float
+    #: left and up positive, together at most 0.5: farther out the tip slips off [ball radii]
+    offset: tuple[float, float]
+    #: of the cue [kg]
+    mass: float
+    #: of its end, for squirt; 0 for none, at most `mass` [kg]
+    end_mass: float
+    #: of the tip; 1 loses nothing
+    restitution: float
+# end Cue
+
+
+# begin Share
+class Share(NamedTuple):
+    """A share of shots, with an interval that contains the true one 95 times in 100."""
+
+    #: 0 to 1.
+    value: float
+    #: Of the interval.
+    low: float
+    #: Of the interval.
+    high: float
+# end Share
+
+
+# begin Advice
+class Advice(NamedTuple):
+    """A shot to play, and its success rate."""
+
+    #: The shot: "7 into p5 (right side pocket), half ball to the left, stun, medium".
+    words: str
+    #: Its result: "pots 84 % (80 to 87), wins 61 %, fouls 2 %; ...".
+    result: str
+    #: Its kind.
+    kind: Literal["pot", "combination", "bank", "kick", "safety", "push out", "break"]
+    #: The ball that it pots; "" for other kinds.
+    ball: str
+    #: The pocket of that ball.
+    pocket: str
+    #: Of a pot: how far the object ball turns to the left.
+    cut_deg: float
+    #: The strike.
+    cue: Cue
+    #: With random errors of the level.
+    strike: Cue
+    #: For the judge.
+    call: Call
+    #: Of the cue ball in hand [m].
+    place: tuple[float, float] | None
+    #: Of shots that the search has not used: it wins the turn or the game.
+    makes: Share
+    #: Of these shots: it is a foul.
+    fouls: Share
+    #: Mean chance to win the rack against a player of the same level, as estimated; in eight-ball only an
+    #: order.
+    worth: float
+    #: The balls that it most often leaves as the surest pot, at most 3.
+    leaves: list[str]
+# end Advice
+
+
+# begin Noise
+class Noise(NamedTuple):
+    """Standard deviations of the independent normal errors of a strike."""
+
+    #: [m/s]
+    speed: float = 0.0
+    #: [degrees]
+    aim_deg: float = 0.0
+    #: [degrees]
+    elevation_deg: float = 0.0
+    #: Of the offset [ball radii].
+    side: float = 0.0
+    #: Of the offset [ball radii].
+    height: float = 0.0
+# end Noise
+
+    @classmethod
+    def named(cls, name: str, radius: float = 0.028575) -> Noise:
+        """"none", "fastfiz" or "ai3603".
+
+        "fastfiz": 0.075 m/s, aim 0.125 and elevation 0.1 degrees, offset 0.5 mm. These are the defaults of
+        FastFiz, the simulator of the computational pool championships.
+        "ai3603": 0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii, as in the course AI3603.
+
+        radius: of the struck ball [m]
+
+        Raises ValueError for another name.
+        """
+        noise: Noise = _carom.noise_by_name(name, radius)
+        return noise
+
+
+# begin PocketLine
+class PocketLine(NamedTuple):
+    """The straight paths of a ball into a pocket that touch neither cushion noses nor jaws."""
+
+    #: Its id.
+    pocket: str
+    #: Unit vector in the middle of these paths.
+    towards: tuple[float, float]
+    #: Centre of the cue ball that sends the ball there, without throw [m].
+    ghost: tuple[float, float]
+    #: Angle between the outermost paths; 0 if there is none.
+    width_deg: float
+    #: From the ball to the point where it begins to fall [m].
+    distance: float
+    #: The nearest ball on the middle path, or "".
+    in_the_way: str = ""
+    #: There is such a path, and no ball blocks the middle one.
+    open: bool = False
+# end PocketLine
+
+
+# begin Aim
+class Aim(NamedTuple):
+    """The result of a search for an aim."""
+
+    #: Of a strike that was played and pots the ball; null: see `why`.
+    aim_deg: float | None
+    #: Of a pot: at the ghost ball, without throw, squirt and swerve.
+    geometric_deg: float
+    #: Of a pot: the cut angle of that aim.
+    cut_deg: float
+    #: Of a bank: the cushion that the ball hits.
+    cushion: str
+    #: Played in the search.
+    shots: int
+    #: Why there is no aim; "" if there is one.
+    why: str = ""
+# end Aim
 # begin Hand
 class Hand(NamedTuple):
     """Standard deviations of a player's independent normal errors."""

@@ -1,9 +1,7 @@
 // Games: noise, and aim help.
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
@@ -11,15 +9,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "carom/games/aim.h"
 #include "carom/games/noise.h"
 #include "native.h"
+#include "values.h"
 
 namespace carom::python {
 namespace {
@@ -37,31 +34,28 @@ Five standard_strike() {
     return numbers;
 }
 
-Five noise_by_name(const std::string& name, double radius) {
-    const games::Noise sd = games::noise_by_name(name, radius);
-    return {sd.speed, sd.aim_deg, sd.elevation_deg, sd.side, sd.height};
-}
-
 /// Adds the errors of a shot to the five numbers of its strike.
-void add_noise_to(double* numbers, const Five& sd, std::uint64_t seed, std::uint64_t index) {
+void add_noise_to(double* numbers, const games::Noise& sd, std::uint64_t seed, std::uint64_t index) {
     Cue cue;
     for (std::size_t k = 0; k < kOfACue; ++k) cue.*kCueNumbers[k] = numbers[k];
-    cue = games::with_noise(cue, {sd[0], sd[1], sd[2], sd[3], sd[4]}, seed, index);
+    cue = games::with_noise(cue, sd, seed, index);
     for (std::size_t k = 0; k < kOfACue; ++k) numbers[k] = cue.*kCueNumbers[k];
 }
 
 /// Adds the errors of shots first, first + 1, ... to strikes, in place.
-void add_noise(const Flat<double>& cues, const Five& sd, std::uint64_t seed, std::uint64_t first) {
+void add_noise(const Flat<double>& cues, nb::handle noise, std::uint64_t seed, std::uint64_t first) {
+    const games::Noise sd = taken<games::Noise>(noise, "noise");
     for (std::size_t i = 0; i < cues.size() / kOfACue; ++i)
         add_noise_to(cues.data() + i * kOfACue, sd, seed, first + i);
 }
 
 /// As above for strikes with a seed and an index each. A strike with a number that is not finite is
 /// unchanged.
-void add_noise_each(const Flat<double>& cues, const Five& sd, const Flat<const std::uint64_t>& seeds,
+void add_noise_each(const Flat<double>& cues, nb::handle noise, const Flat<const std::uint64_t>& seeds,
                     const Flat<const std::int64_t>& indices) {
     if (cues.size() != kOfACue * seeds.size() || seeds.size() != indices.size())
         throw nb::value_error("expected a seed and an index for every strike");
+    const games::Noise sd = taken<games::Noise>(noise, "noise");
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         double* numbers = cues.data() + i * kOfACue;
         if (!std::all_of(numbers, numbers + kOfACue, [](double number) { return std::isfinite(number); }))
@@ -70,65 +64,31 @@ void add_noise_each(const Flat<double>& cues, const Five& sd, const Flat<const s
     }
 }
 
-/// In the order of carom.games.PocketLine and carom.games.Aim.
-using LineRow = std::tuple<std::string, std::pair<double, double>, double, double, std::string>;
-using AimRow = std::tuple<std::optional<double>, double, double, std::string, int, std::string>;
-
-std::vector<LineRow> pocket_lines(const NativeScene& scene, const std::string& ball,
-                                  const std::string& cue_ball) {
-    std::vector<LineRow> rows;
-    for (const games::PocketLine& line : games::pocket_lines(*scene.scene, ball, cue_ball))
-        rows.push_back({scene.scene->table.pockets[static_cast<std::size_t>(line.pocket)].id,
-                        {line.towards.x(), line.towards.y()},
-                        line.width_deg,
-                        line.distance,
-                        line.in_the_way});
-    return rows;
-}
-
-AimRow row_of(const games::Aim& aim) {
-    return {aim.cue ? std::optional(aim.cue->aim_deg) : std::nullopt,
-            aim.geometric_deg,
-            aim.cut_deg,
-            aim.cushion,
-            aim.shots,
-            aim.why};
-}
-
 /// The scene's strike, whose aim is ignored. @throws nb::value_error if there is none
 const Cue& cue_of(const NativeScene& scene) {
     if (!scene.scene->cue) throw nb::value_error("the scene has no cue; give the strike");
     return *scene.scene->cue;
 }
 
-AimRow aim_pot(const NativeScene& scene, const std::string& ball, const std::string& pocket) {
-    const Cue& cue = cue_of(scene);
-    const nb::gil_scoped_release no_gil;
-    return row_of(games::aim_pot(*scene.scene, cue, ball, pocket));
-}
-
-std::vector<AimRow> bank_routes(const NativeScene& scene, const std::string& ball,
-                                const std::string& pocket) {
-    const Cue& cue = cue_of(scene);
-    const nb::gil_scoped_release no_gil;
-    std::vector<AimRow> rows;
-    for (const games::Aim& aim : games::bank_routes(*scene.scene, cue, ball, pocket))
-        rows.push_back(row_of(aim));
-    return rows;
-}
-
 }  // namespace
 
 void add_games(nb::module_& m) {
     m.def("standard_strike", standard_strike);
-    m.def("noise_by_name", noise_by_name);
+    m.def("noise_by_name",
+          [](const std::string& name, double radius) { return given(games::noise_by_name(name, radius)); });
     m.def("add_noise", add_noise, nb::arg("cues").noconvert(), nb::arg("sd"), nb::arg("seed"),
           nb::arg("first"));
     m.def("add_noise_each", add_noise_each, nb::arg("cues").noconvert(), nb::arg("sd"),
           nb::arg("seeds").noconvert(), nb::arg("indices").noconvert());
-    m.def("pocket_lines", pocket_lines);
-    m.def("aim_pot", aim_pot);
-    m.def("bank_routes", bank_routes);
+    m.def("pocket_lines", [](const NativeScene& scene, const std::string& ball, const std::string& cue_ball) {
+        return given(games::pocket_lines(*scene.scene, ball, cue_ball));
+    });
+    m.def("aim_pot", [](const NativeScene& scene, const std::string& ball, const std::string& pocket) {
+        return given(unlocked([&] { return games::aim_pot(*scene.scene, cue_of(scene), ball, pocket); }));
+    });
+    m.def("bank_routes", [](const NativeScene& scene, const std::string& ball, const std::string& pocket) {
+        return given(unlocked([&] { return games::bank_routes(*scene.scene, cue_of(scene), ball, pocket); }));
+    });
     m.def("ghost_ball", [](std::pair<double, double> object, std::pair<double, double> towards, double both) {
         const Vec2 ghost =
             games::ghost_ball({object.first, object.second}, {towards.first, towards.second}, both);

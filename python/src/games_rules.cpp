@@ -2,7 +2,6 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -52,36 +50,18 @@ NativeScene next_table(const NativeRecord& record, const NativeScene* other, nb:
     return with_cue(cue, games::table_after(scene, *record.record, chosen, at));
 }
 
-using ShareRow = std::tuple<double, double, double>;
-using CueRow = std::tuple<double, double, double, double, double>;
-/// In the order of carom.games.Advice.
-using AdviceRow = std::tuple<std::string, std::string, std::string, std::string, double, CueRow, nb::any,
-                             std::optional<Place>, ShareRow, ShareRow, double, std::vector<std::string>>;
-
-std::vector<AdviceRow> advise(nb::handle state, const NativeScene& scene, const std::string& skill,
-                              std::uint64_t seed, std::size_t best, std::size_t fresh, int threads) {
-    const Scene& table = *scene.scene;
+nb::any advise(nb::handle state, const NativeScene& scene, const std::string& skill, std::uint64_t seed,
+               std::size_t best, std::size_t fresh, int threads) {
     games::AdviceOptions options;
     options.seed = seed;
     options.best = best;
     options.fresh = fresh;
     options.threads = threads;
     const games::State before = state_from(state);
-    const auto advice = [&] {
-        const nb::gil_scoped_release no_gil;
-        const games::Skill level = games::skill_by_name(skill, table.balls.R);
-        return games::advise(before, table, level, kernel::best_isa(), options);
-    }();
-    std::vector<AdviceRow> rows;
-    for (const games::Advice& a : advice) {
-        const auto share = [](const games::Share& s) { return ShareRow(s.value, s.low, s.high); };
-        std::optional<Place> place;
-        if (a.place) place = {a.place->x(), a.place->y()};
-        rows.emplace_back(games::words_of(a, table.table), name(a.kind), a.ball, a.pocket, a.cut_deg,
-                          CueRow(a.cue.speed, a.cue.aim_deg, a.cue.elevation_deg, a.cue.side, a.cue.height),
-                          given(a.call), place, share(a.makes), share(a.fouls), a.worth, a.leaves);
-    }
-    return rows;
+    return given(unlocked([&] {
+        const games::Skill level = games::skill_by_name(skill, scene.scene->balls.R);
+        return games::advise(before, *scene.scene, level, kernel::best_isa(), options);
+    }));
 }
 
 std::vector<std::pair<std::string, Place>> spots(const NativeRecord& record) {
@@ -105,11 +85,7 @@ void add_games_rules(nb::module_& m) {
         made.rules = asked.rules;
         return given(made);
     });
-    m.def("games", [] {
-        std::vector<games::GameInfo> list;
-        for (const games::Game game : games::all_of(games::Game{})) list.push_back(games::info_of(game));
-        return given(list);
-    });
+    m.def("games", [] { return given(games::all_games()); });
     m.def("legal", [](nb::handle state, const std::vector<std::string>& balls) {
         return given(games::legal(state_from(state), balls));
     });
@@ -117,7 +93,10 @@ void add_games_rules(nb::module_& m) {
         return given(games::legal(state_from(state), *on.scene));
     });
     m.def("judge", [](nb::handle state, const NativeRecord& record, nb::handle call) {
-        return given(games::judge(state_from(state), *record.record, taken<games::Call>(call, "call")));
+        games::Verdict verdict =
+            games::judge(state_from(state), *record.record, taken<games::Call>(call, "call"));
+        name_record(verdict, *record.record);
+        return given(verdict);
     });
     m.def("cue_ball", [](nb::handle state) { return std::string(games::cue_ball(state_from(state))); });
     m.def("may_place", [](const NativeRecord& record, nb::handle option, const Place& place) {
@@ -142,8 +121,7 @@ void add_games_rules(nb::module_& m) {
         nb::arg("scene"), nb::arg("place").none(), nb::arg("cue"));
     m.def("skills", [] { return std::vector<std::string>(games::kSkills.begin(), games::kSkills.end()); });
     m.def("noise_of_skill", [](const std::string& skill, double radius) {
-        const games::Noise sd = games::skill_by_name(skill, radius).noise;
-        return CueRow(sd.speed, sd.aim_deg, sd.elevation_deg, sd.side, sd.height);
+        return given(games::skill_by_name(skill, radius).noise);
     });
 }
 

@@ -104,7 +104,7 @@ Value value_from(nb::handle of, const Shape& shape) {
         if (nb::isinstance<nb::tuple>(of) && nb::len(of) == inner.rows.size()) {
             const nb::tuple members = nb::borrow<nb::tuple>(of);
             for (std::size_t i = 0; i < inner.rows.size(); ++i)
-                if (inner.rows[i].computed == nullptr)
+                if (!inner.rows[i].is_computed())
                     all[inner.rows[i].key] = value_from(members[i], inner.rows[i].shape());
             return all;
         }

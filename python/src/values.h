@@ -17,6 +17,12 @@ template <class T>
 nb::any given(const T& of) {
     return nb::steal<nb::any>(object_of(interface::value_of(of), interface::shape_of<T>()).release());
 }
+/// The result of `work`, while other Python threads run.
+template <class Work>
+auto unlocked(Work&& work) {
+    const nb::gil_scoped_release no_gil;
+    return work();
+}
 /// @param name  for messages @throws interface::ValueError
 template <class T>
 T taken(nb::handle of, const char* name) {

@@ -48,9 +48,8 @@ class Match {
   public:
     Match(const Start& start, std::uint64_t seed) : start_(start), random_(seed) {
         state_ = games::new_game(start.game, random_.below(2), random_.below(2) * 5);
-        for (const games::RuleOption& option : games::rule_options())
-            if (option.game == start.game)
-                games::set_rule(state_, option.key + "=" + option.values[pick(option.values.size())]);
+        for (const games::RuleOption& option : games::info_of(start.game).options)
+            games::set_rule(state_, option.key + "=" + option.values[pick(option.values.size())]);
         rack();
     }
 

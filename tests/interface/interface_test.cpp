@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "carom/engine/math.h"
+#include "carom/games/aim.h"
+#include "carom/games/player.h"
 #include "carom/games/rules.h"
 #include "carom/interface/shape.h"
 
@@ -67,10 +69,11 @@ Value random_value(const Shape& shape, const Shape::Limits& limits, std::mt19937
     }
     Value all = Value::object();
     for (const Shape::Member& row : shape.rows) {
-        if (row.computed != nullptr) continue;
-        // The rules of a state are not any texts.
-        all[row.key] =
-            std::string(row.key) == "rules" ? Value::array() : random_value(row.shape(), row.limits, random);
+        if (row.is_computed()) continue;
+        // The rules of a state are not any texts, and no preset has any mass.
+        all[row.key] = std::string(row.key) == "rules"    ? Value::array()
+                       : std::string(row.key) == "preset" ? Value("plain")
+                                                          : random_value(row.shape(), row.limits, random);
     }
     return all;
 }
@@ -101,6 +104,9 @@ TEST(Interface, EveryTypeSurvivesJson) {
     expect_round_trips<games::Legal>();
     expect_round_trips<games::Call>();
     expect_round_trips<games::GameInfo>();
+    expect_round_trips<games::Advice>();
+    expect_round_trips<games::Aim>();
+    expect_round_trips<games::PocketLine>();
 }
 
 TEST(Interface, KeysDifferAndHideNoMethodOfATuple) {
@@ -108,7 +114,7 @@ TEST(Interface, KeysDifferAndHideNoMethodOfATuple) {
         std::set<std::string> keys{"count", "index"};
         for (const Shape::Member& row : type->rows) {
             EXPECT_TRUE(keys.insert(row.key).second) << type->name << "." << row.key;
-            EXPECT_NE(*row.meaning, '\0') << type->name << "." << row.key;
+            EXPECT_FALSE(row.meaning.empty()) << type->name << "." << row.key;
         }
     }
 }
@@ -139,6 +145,11 @@ TEST(Interface, AWrongValueIsRefusedByItsPath) {
               "state.rules: snooker has no option \"call\"; it has miss");
     EXPECT_EQ(state(R"({"game": "snooker", "pionts": 1})").substr(0, 55),
               "state: unknown key \"pionts\"; expected one of game, turn");
+    const auto cue = [](const char* json) { return refused<Cue>(json, "cue"); };
+    EXPECT_EQ(cue(R"({"speed": "2"})"), "cue.speed: expected a number");
+    EXPECT_EQ(cue(R"({"offset": [0]})"), "cue.offset: expected a list of 2 numbers");
+    EXPECT_EQ(cue(R"({"preset": "iron"})"),
+              "cue.preset: expected one of low_deflection, plain, break, lossless");
     EXPECT_EQ(state("{}").substr(0, 40), "state.game: expected one of eight_ball, ");
     EXPECT_EQ(state("nothing").substr(0, 42), "state: expected an object with game, turn,");
     EXPECT_EQ(

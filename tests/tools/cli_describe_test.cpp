@@ -62,7 +62,7 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     EXPECT_EQ(offered(folder, {"carom", "sweep", "-o", "a"}), Words{"a shot.toml"});
     EXPECT_EQ(offered(folder, {"carom", "describe", ""}),
               (Words{"man", "bash", "zsh", "command-line", "scene-schema", "record-schema", "scene-format",
-                     "measures", "games", "events", "types", "types-python"}));
+                     "measures", "games", "events", "types", "types-python", "types-typescript"}));
 }
 
 TEST(CliDescribe, ZshReadsItsCompletion) {

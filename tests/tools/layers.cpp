@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 7> kLayers = {"kernel", "engine", "games", "interface",
                                                      "render", "tools",  "lab"};
 constexpr int kNoLayer = -1;
-/// The C interface is beside the games: it may use the same layers, and no layer uses it.
+/// The C interface is beside the interface's types, which it may use; no layer uses it.
 constexpr std::string_view kCInterface = "capi";
-constexpr int kCInterfaceLayer = 2;
+constexpr int kCInterfaceLayer = 3;
 /// The Python package is beside the program: it may use the same layers, and no layer uses it.
 constexpr std::string_view kPython = "python";
 constexpr int kPythonLayer = 5;

@@ -215,13 +215,14 @@ TEST(Pages, EveryOptionStandsInAPageOrAScript) {
 }
 
 // A word contains a letter or a digit; table rules and comments do not count. The generated command line page
-// does.
+// does, but not the page of types, which grows with them.
 TEST(Pages, GuideReferenceAndDesignCanBeReadInAnAfternoon) {
     EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n<!-- figure: 1.5 m ; c -->\n"), 3u);
     std::size_t words = 0;
     for (const char* folder : {"docs/guide", "docs/reference", "docs/design"})
-        for (const auto& [name, text] : pages_of(folder)) words += words_of(text);
-    EXPECT_LE(words, 28000u) << "cut, or move what was measured to a note in lab/notes";
+        for (const auto& [name, text] : pages_of(folder))
+            if (name != "docs/reference/types.md") words += words_of(text);
+    EXPECT_LE(words, 27450u) << "cut, or move what was measured to a note in lab/notes";
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ test("a rack is known to be broken, and a safety has no share of wins", skip, as
   await browser.until("caromPlay.state.hints.length > 0");
   assert.equal(await value("caromPlay.state.hints[0].kind"), "break");
   await value(`(() => { const {state} = caromPlay, [hint] = state.hints;
-    state.hints = [{...hint, kind: "safety", words: "safety: soft", makes: [0, 0, 0], fouls: [0.1, 0, 0]}];
+    state.hints = [{...hint, kind: "safety", words: "safety: soft", makes: {value: 0}, fouls: {value: 0.1}}];
     state.tell("hints"); })()`);
   assert.match(await value("document.querySelector('.hint-list button').textContent"),
     /safety: soft: 90 % fair/);

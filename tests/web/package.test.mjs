@@ -82,8 +82,7 @@ test("a wrong type is a TypeError that names the argument", () => {
     until: [() => simulate(scene, {until: "1"}), () => simulate(scene, {until: NaN})],
     events: [() => simulate(scene, {events: null})],
     hash: [() => simulateMany(scene, {}, {hash: 1})],
-    ball: [() => shot.stateAt(0.5, 0), () => shot.stateAt(null, 0), () => shot.stateAt([0], 0),
-      () => games.judge(state, shot, {ball: 1})],
+    ball: [() => shot.stateAt(0.5, 0), () => shot.stateAt(null, 0), () => shot.stateAt([0], 0)],
     time: [() => shot.stateAt(0, "0"), () => shot.stateAt(0)],
     times: [() => shot.states("0"), () => shot.states(null)],
     "times\\[1\\]": [() => shot.states([0, NaN]), () => shot.states([0, "1"])],
@@ -91,7 +90,6 @@ test("a wrong type is a TypeError that names the argument", () => {
     first: [() => games.start("nine_ball", {first: 0.5})],
     state: [() => games.legal(undefined, scene), () => games.judge("nine_ball", shot)],
     shot: [() => games.judge(state, scene)],
-    safety: [() => games.judge(state, shot, {safety: "no"})],
     option: [() => verdict.next({option: -1}), () => verdict.mayPlace(0, 0, 0.5)],
     x: [() => verdict.mayPlace("0", 0)],
     place: [() => verdict.next({place: 3}), () => verdict.next({place: [1]})],
@@ -100,6 +98,8 @@ test("a wrong type is a TypeError that names the argument", () => {
     for (const call of calls)
       assert.throws(call, {name: "TypeError", message: new RegExp(`^${name} is `)}, call.toString());
   assert.throws(() => new Scene(), TypeError);
+  assert.throws(() => games.judge(state, shot, {safety: "no"}),
+    {kind: "argument", message: "call.safety: expected true or false"});
 });
 
 test("a value that is not a number is reported by its key", () => {
@@ -217,7 +217,7 @@ test("a game has options, and a shot a route", () => {
   const state = games.start("eight_ball", {rules: {call: "none", in_hand: "behind_line"}});
   assert.deepEqual(state.rules, ["call=none", "in_hand=behind_line"]);
   assert.deepEqual(games.start("nine_ball", {rules: {push_out: false}}).rules, ["push_out=false"]);
-  const [miss] = games.options("snooker");
+  const [miss] = games.list().find(({name}) => name === "snooker").options;
   assert.deepEqual([miss.key, miss.values], ["miss", ["false", "true"]]);
   assert.throws(() => games.start("eight_ball", {rules: {cal: "all"}}), /it has call, eight_on_break/);
   const shot = simulate(Scene.parse(sceneText("three_cushion.toml")));

@@ -42,7 +42,7 @@ export interface BallPlace {
   mass: number;
 }
 
-export interface Cue {
+export interface SceneCue {
   /** Id of the ball that it strikes. */
   ball: string;
   /** Of the cue [m/s]. */
@@ -84,7 +84,7 @@ export class Scene {
   readonly everything: string;
   readonly balls: BallPlace[];
   /** null if no ball is struck. */
-  readonly cue: Cue | null;
+  readonly cue: SceneCue | null;
   readonly table: TableInfo;
   /** The table's outlines [m] and how the balls look, for drawing. */
   look(): {shape: object; styles: {color: [number, number, number]; pattern: string; number: number}[]};
@@ -108,16 +108,16 @@ export interface ShotEvent {
   /** Id of the other ball, cushion, jaw or pocket; "" if there is none. */
   other: string;
   /** Its name for people: "left rail, head half". */
-  otherName: string;
+  other_name: string;
   /** Centre of the ball [m]. */
   place: [number, number, number];
   /** Of the ball [m/s], just before and just after. */
-  speedBefore: number | null;
+  speed_before: number | null;
   speed: number | null;
   /** Approach speed of the two [m/s]. */
   closing: number | null;
-  /** Cut angle [rad]. */
-  cut: number | null;
+  /** Cut angle [degrees]. */
+  cut_deg: number | null;
   /** Place along the rail in diamonds: 0 to 4 on short rails, 0 to 8 on long ones. */
   diamond: number | null;
   /** Ids of all balls of a cluster. */
@@ -229,84 +229,282 @@ export interface Batch {
 export function simulateMany(scene: Scene, columns: {[key: string]: ArrayLike<number>},
   options?: {hash?: boolean}): Batch;
 
-export type Game = "eight_ball" | "nine_ball" | "three_cushion" | "snooker" | "sum_to_three"
-  | "ten_ball" | "straight_pool" | "free_pyramid" | "straight_rail" | "one_cushion" | "four_ball";
+// begin types
+export type Game = "eight_ball" | "nine_ball" | "three_cushion" | "snooker" | "sum_to_three" | "ten_ball" |
+  "straight_pool" | "free_pyramid" | "straight_rail" | "one_cushion" | "four_ball";
 
-/** An option of a game's rules; the first value is the default. */
-export interface RuleOption {
+/** The memory of a game between two shots. Players are 0 and 1; a pair has a value for each. */
+export interface State {
+  /** The game. */
   game: Game;
+  /** Whose shot it is. */
+  turn: number;
+  /** The break, or the first shot of a carom game. */
+  opening: boolean;
+  /** Of the cue ball: its area. */
+  in_hand: "no" | "anywhere" | "head string" | "D";
+  /** Below 0 in straight pool and four-ball. */
+  points: [number, number];
+  /** Points that win; 0: no end. */
+  target: number;
+  /** The game is over. */
+  over: boolean;
+  /** -1: none, or not yet. */
+  winner: number;
+  /** Eight-ball. */
+  group: ["open" | "solids" | "stripes", "open" | "solids" | "stripes"];
+  /** Nine-ball, ten-ball: the shot after the break. */
+  may_push_out: boolean;
+  /** In a row; snooker: misses with a clear path to a full ball. */
+  fouls: [number, number];
+  /** Snooker: the ball on; colour: any, after a red. */
+  on: "colour" | "red" | "yellow" | "green" | "brown" | "blue" | "pink" | "black";
+  /** Snooker: any ball may be nominated. */
+  free_ball: boolean;
+  /** Options that are not defaults, such as "call=eight". */
+  rules: string[];
+}
+
+/** An announcement before a shot. */
+export interface Call {
+  /** Id of the called ball. Snooker: the nominated colour or free ball; if "", the ball that is hit first. */
+  ball: string;
+  /** Id of the called pocket: "p1", ... */
+  pocket: string;
+  /** Eight-ball, ten-ball, straight pool: the turn ends whatever falls. */
+  safety: boolean;
+  /** Nine-ball, ten-ball: a push out. */
+  push_out: boolean;
+}
+
+/** The rules of the next shot. */
+export interface Legal {
+  /** That may be struck: one, in free pyramid any. */
+  cue_balls: string[];
+  /** That may be hit first. */
+  first: string[];
+  /** That may be called. */
+  callable: string[];
+  /** As in the state. */
+  in_hand: "no" | "anywhere" | "head string" | "D";
+  /** A push out may be called. */
+  may_push_out: boolean;
+}
+
+/** A foul, and the rule that it breaks. */
+export interface Foul {
+  /** Its name. */
+  foul: "cue ball pocketed" | "cue ball off the table" | "no ball hit" | "wrong ball first" |
+    "no cushion after contact" | "too few balls to a cushion on the break" | "ball off the table" |
+    "cue ball placed outside its area" | "ball behind the head string first" | "third foul in a row" |
+    "wrong cue ball" | "opening shot not at the red" | "wrong ball pocketed" | "two balls hit at once" |
+    "jump shot" | "snooker behind the free ball" | "miss" | "opponent's cue ball hit" |
+    "touching ball played into";
+  /** "WPA 6.1"; "" if the game has no such rule. */
+  rule: string;
+}
+
+/** A ball that is respotted. */
+export interface Respot {
+  /** Its id. */
+  ball: string;
+  /** [m] */
+  place: [number, number];
+}
+
+/** A possible continuation of the game. */
+export interface Option {
+  /** The next step. */
+  decision: "play on" | "take in hand" | "pass back" | "rerack" | "rerack for other" | "spot the eight" |
+    "spot touching balls" | "replace the balls" | "rack fourteen";
+  /** Of the next shot. */
+  state: State;
+  /** Before it. */
+  respots: Respot[];
+  /** The balls are racked again. */
+  rerack: boolean;
+  /** The next shot in words. */
+  text: string;
+  /** Hash of the judged record; "": unknown. */
+  record: string;
+}
+
+/** The outcome of a shot. */
+export interface Verdict {
+  /** Empty for a fair shot. */
+  fouls: Foul[];
+  /** Scored by the shot. */
+  points: number;
+  /** Snooker: points for the other player. */
+  penalty: number;
+  /** At least one; the first applies unless the chooser picks another. */
+  options: Option[];
+  /** A player; -1 with one option, or if lots decide. */
+  chooser: number;
+}
+
+/** An option of a game's rules. */
+export interface RuleOption {
+  /** The game. */
+  game: Game;
+  /** Its name. */
   key: string;
+  /** The first one is the default. */
   values: string[];
+  /** Its meaning. */
   what: string;
 }
 
-/** The state of a game between two shots, as in `carom judge --state-out`. Players are 0 and 1. */
-export interface GameState {
-  game: Game;
-  turn: number;
-  opening: boolean;
-  in_hand: "no" | "anywhere" | "head string" | "D";
-  points: [number, number];
+/** A game. */
+export interface GameInfo {
+  /** In files. */
+  name: string;
+  /** For people. */
+  title: string;
+  /** Its published rules, with their edition. */
+  book: string;
+  /** Announcements before a shot. */
+  calls: string;
+  /** Players collect points. */
+  is_scored: boolean;
+  /** Each player has a group of balls. */
+  has_groups: boolean;
+  /** A safety may be called. */
+  has_safety: boolean;
+  /** A push out may be called. */
+  has_push_out: boolean;
+  /** Points that win, if none are given; 0: no end. */
   target: number;
-  over: boolean;
-  winner: number;
-  group: [string, string];
-  may_push_out: boolean;
-  fouls: [number, number];
-  on: string;
-  free_ball: boolean;
-  /** Options of the rules that are not defaults: "call=eight". */
-  rules?: string[];
+  /** A target to offer; 0: none. */
+  usual_target: number;
+  /** Object balls of a full rack. */
+  balls: number;
+  /** A table for it: a preset. */
+  table: string;
+  /** Its first scene, without table and balls. Places are fractions of the width (w) and the length (l) of
+   * the table; SEED is of the rack. */
+  start: string;
+  /** Of its rules. */
+  options: RuleOption[];
 }
 
-export interface Strike {
-  speed: number;
-  aim_deg: number;
-  elevation_deg: number;
-  /** Side and height [ball radii]. */
-  offset: [number, number];
-}
-
-/** A shot to play, and its success rate. Shares have intervals of 95 %: [share, low, high]. */
-export interface Advice {
-  words: string;
-  /** Its success rate, the chance to win, fouls and the position that it leaves, in words. */
-  result: string;
-  kind: "pot" | "combination" | "bank" | "kick" | "safety" | "push out" | "break";
-  /** The ball to pot, and the pocket; "" for other kinds. */
+/** A strike: [cue] of a scene file. */
+export interface Cue {
+  /** kind of cue: its `mass`, `end_mass` and `restitution` */
+  preset: string;
+  /** id of the ball that is struck */
   ball: string;
+  /** of the cue [m/s] */
+  speed: number;
+  /** 0 is +x, 90 is +y [degrees] */
+  aim_deg: number;
+  /** of the butt; above 0 it lifts the ball; `"auto"`: the least that clears rails and balls [degrees] */
+  elevation_deg: number;
+  /** left and up positive, together at most 0.5: farther out the tip slips off [ball radii] */
+  offset: [number, number];
+  /** of the cue [kg] */
+  mass: number;
+  /** of its end, for squirt; 0 for none, at most `mass` [kg] */
+  end_mass: number;
+  /** of the tip; 1 loses nothing */
+  restitution: number;
+}
+
+/** A share of shots, with an interval that contains the true one 95 times in 100. */
+export interface Share {
+  /** 0 to 1. */
+  value: number;
+  /** Of the interval. */
+  low: number;
+  /** Of the interval. */
+  high: number;
+}
+
+/** A shot to play, and its success rate. */
+export interface Advice {
+  /** The shot: "7 into p5 (right side pocket), half ball to the left, stun, medium". */
+  words: string;
+  /** Its result: "pots 84 % (80 to 87), wins 61 %, fouls 2 %; ...". */
+  result: string;
+  /** Its kind. */
+  kind: "pot" | "combination" | "bank" | "kick" | "safety" | "push out" | "break";
+  /** The ball that it pots; "" for other kinds. */
+  ball: string;
+  /** The pocket of that ball. */
   pocket: string;
+  /** Of a pot: how far the object ball turns to the left. */
   cut_deg: number;
-  cue: Strike;
-  /** The cue with random errors of the level. */
-  strike: Strike;
-  /** The argument `announced` of judge(). */
-  call: {ball: string; pocket: string; safety: boolean; pushOut: boolean};
+  /** The strike. */
+  cue: Cue;
+  /** With random errors of the level. */
+  strike: Cue;
+  /** For the judge. */
+  call: Call;
   /** Of the cue ball in hand [m]. */
   place: [number, number] | null;
-  /** Shares of shots that the search has not used: wins of the turn or the game, and fouls. */
-  makes: [number, number, number];
-  fouls: [number, number, number];
-  /** Mean chance to win against a player of the same level, as estimated; for eight-ball only an order. */
+  /** Of shots that the search has not used: it wins the turn or the game. */
+  makes: Share;
+  /** Of these shots: it is a foul. */
+  fouls: Share;
+  /** Mean chance to win the rack against a player of the same level, as estimated; in eight-ball only an
+   * order. */
   worth: number;
+  /** The balls that it most often leaves as the surest pot, at most 3. */
   leaves: string[];
 }
 
+/** Standard deviations of the independent normal errors of a strike. */
+export interface Noise {
+  /** [m/s] */
+  speed: number;
+  /** [degrees] */
+  aim_deg: number;
+  /** [degrees] */
+  elevation_deg: number;
+  /** Of the offset [ball radii]. */
+  side: number;
+  /** Of the offset [ball radii]. */
+  height: number;
+}
+
+/** The straight paths of a ball into a pocket that touch neither cushion noses nor jaws. */
+export interface PocketLine {
+  /** Its id. */
+  pocket: string;
+  /** Unit vector in the middle of these paths. */
+  towards: [number, number];
+  /** Centre of the cue ball that sends the ball there, without throw [m]. */
+  ghost: [number, number];
+  /** Angle between the outermost paths; 0 if there is none. */
+  width_deg: number;
+  /** From the ball to the point where it begins to fall [m]. */
+  distance: number;
+  /** The nearest ball on the middle path, or "". */
+  in_the_way: string;
+  /** There is such a path, and no ball blocks the middle one. */
+  open: boolean;
+}
+
+/** The result of a search for an aim. */
+export interface Aim {
+  /** Of a strike that was played and pots the ball; null: see `why`. */
+  aim_deg: number | null;
+  /** Of a pot: at the ghost ball, without throw, squirt and swerve. */
+  geometric_deg: number;
+  /** Of a pot: the cut angle of that aim. */
+  cut_deg: number;
+  /** Of a bank: the cushion that the ball hits. */
+  cushion: string;
+  /** Played in the search. */
+  shots: number;
+  /** Why there is no aim; "" if there is one. */
+  why: string;
+}
+// end types
+
+export type GameState = State;
+
 export class Verdict {
-  /** Empty for a fair shot. */
-  readonly fouls: {foul: string; rule: string}[];
-  readonly points: number;
-  readonly penalty: number;
-  /** The player who chooses among the options, or -1. */
-  readonly chooser: number;
-  readonly options: {
-    decision: string;
-    /** "player 2 shoots, cue ball in hand anywhere" */
-    text: string;
-    rerack: boolean;
-    state: GameState;
-    respots: {ball: string; place: [number, number]}[];
-  }[];
   /** Whether the cue ball may be placed there [m]. */
   mayPlace(x: number, y: number, option?: number): boolean;
   /** The best option for the player who chooses: eight-ball, nine-ball and ten-ball. */
@@ -322,17 +520,10 @@ export const games: {
    * options that are not defaults, {call: "eight"}. */
   start(game: Game,
     options?: {first?: 0 | 1; target?: number; rules?: {[key: string]: string | boolean}}): GameState;
-  /** The options of a game. */
-  options(game: Game): RuleOption[];
+  /** All games, with their rules and options. */
+  list(): GameInfo[];
   /** The rules of the next shot. */
-  legal(state: GameState, scene: Scene): {
-    cueBalls: string[];
-    first: string[];
-    callable: string[];
-    inHand: GameState["in_hand"];
-    mayPushOut: boolean;
-    text: string;
-  };
+  legal(state: GameState, scene: Scene): Legal & {text: string};
   /** The best shots of different kind, ball or pocket, the best first; at least one. `skill`: "beginner",
    * "club", "league", "professional" or "machine"; `shots`: fresh shots for each, 0 for none. It takes some
    * tenths of a second: call it in a Worker. After 0.6 `seconds` it looks for pots alone. Eight-ball,
@@ -340,7 +531,6 @@ export const games: {
   advise(state: GameState, scene: Scene,
     options?: {skill?: string; seed?: number; best?: number; shots?: number; seconds?: number}): Advice[];
   /** The strike of a player of this level who intends the scene's cue. @throws CaromError */
-  strike(scene: Scene, options?: {skill?: string; seed?: number}): Strike;
-  judge(state: GameState, shot: Shot,
-    announced?: {ball?: string; pocket?: string; safety?: boolean; pushOut?: boolean}): Verdict;
+  strike(scene: Scene, options?: {skill?: string; seed?: number}): Cue;
+  judge(state: GameState, shot: Shot, announced?: Partial<Call>): Verdict;
 };

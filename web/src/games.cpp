@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/verdict.h"
@@ -23,12 +22,6 @@ games::State state_at(const char* text, std::size_t size) {
     return interface::read_as<games::State>(Json::parse(text, text + size, nullptr, false), "state");
 }
 
-games::Call call_at(const char* text, std::size_t size) {
-    const Json json = Json::parse(text, text + size);
-    return {json.value("ball", ""), json.value("pocket", ""), json.value("safety", false),
-            json.value("pushOut", false)};
-}
-
 const games::Option& option_of(const WebVerdict* verdict, std::size_t index) {
     if (index >= verdict->verdict.options.size())
         throw BadArgument("option " + std::to_string(index) + " is out of range; there are " +
@@ -44,35 +37,23 @@ void give_scene(Scene scene) {
 
 }  // namespace
 
-CAROM_WEB int carom_game_new(const char* name, std::size_t size, int first, int target) {
+/// @param options  keys of a state that are not defaults
+CAROM_WEB int carom_game_new(const char* name, std::size_t size, const char* options,
+                             std::size_t options_size) {
     return guarded([&] {
-        const games::Game game = games::game_named(std::string_view(name, size));
-        give(nullptr, dumped(interface::value_of(games::new_game(game, first, target))));
+        const Json chosen = Json::parse(options, options + options_size);
+        give(nullptr, dumped(interface::new_state(std::string(name, size), chosen)));
     });
 }
-/// @param rules a list of options: ["call=eight"]
-CAROM_WEB int carom_game_rules(const char* state, std::size_t size, const char* rules,
-                               std::size_t rules_size) {
-    return guarded([&] {
-        games::State with = state_at(state, size);
-        for (const Json& option : Json::parse(rules, rules + rules_size))
-            games::set_rule(with, option.get<std::string>());
-        give(nullptr, dumped(interface::value_of(with)));
-    });
-}
-CAROM_WEB int carom_game_options() {
-    return guarded([&] { give(nullptr, dumped(interface::value_of(games::rule_options()))); });
+CAROM_WEB int carom_games() {
+    return guarded([&] { give(nullptr, dumped(interface::value_of(games::all_games()))); });
 }
 CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebScene* scene) {
     return guarded([&] {
         const games::State before = state_at(state, size);
-        const games::Legal legal = games::legal(before, scene->scene);
-        give(nullptr, dumped({{"cueBalls", legal.cue_balls},
-                              {"first", legal.first},
-                              {"callable", legal.callable},
-                              {"inHand", name(legal.in_hand)},
-                              {"mayPushOut", legal.may_push_out},
-                              {"text", games::next_text(before)}}));
+        Json legal = interface::value_of(games::legal(before, scene->scene));
+        legal["text"] = games::next_text(before);
+        give(nullptr, dumped(legal));
     });
 }
 CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size_t size, const char* call,
@@ -80,7 +61,8 @@ CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size
     return guarded([&] {
         const games::State before = state_at(state, size);
         auto verdict = std::make_unique<WebVerdict>();
-        verdict->verdict = games::judge(before, shot->record, call_at(call, call_size));
+        const auto said = interface::read_as<games::Call>(Json::parse(call, call + call_size), "call");
+        verdict->verdict = games::judge(before, shot->record, said);
         std::string text = dumped(interface::value_of(verdict->verdict));
         give(verdict.release(), std::move(text));
     });
@@ -110,10 +92,7 @@ CAROM_WEB int carom_game_advise(const char* state, std::size_t size, const WebSc
             skill.look = games::Look::kPot;
             advice = games::advise(before, table, skill, kernel::best_isa(), how);
         }
-        Json list = tools::advice_json(advice, table.table);
-        for (std::size_t i = 0; i < advice.size(); ++i)
-            list[i]["strike"] = tools::cue_json(games::with_noise(advice[i].cue, skill.noise, how.seed, i));
-        give(nullptr, dumped(list));
+        give(nullptr, dumped(interface::value_of(advice)));
     });
 }
 /// The strike of a player of a level who intends the scene's cue.
@@ -124,7 +103,7 @@ CAROM_WEB int carom_game_strike(const WebScene* scene, double seed, const char* 
         const games::Skill by = games::skill_by_name(std::string(skill, size), scene->scene.balls.R);
         const games::Noise noise = by.noise_at(cue.speed);
         give(nullptr,
-             dumped(tools::cue_json(games::with_noise(cue, noise, static_cast<std::uint64_t>(seed), 0))));
+             dumped(interface::value_of(games::with_noise(cue, noise, static_cast<std::uint64_t>(seed), 0))));
     });
 }
 CAROM_WEB int carom_game_choose(const WebShot* shot, const WebVerdict* verdict, const char* skill,

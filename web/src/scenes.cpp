@@ -122,7 +122,7 @@ Json described(const Scene& scene) {
               {"length", scene.table.length},
               {"corner", place(scene.table.corner)},
               {"pockets", pockets}}},
-            {"ballPreset", scene.ball_preset},
+            {"ball_preset", scene.ball_preset},
             {"material", material}};
 }
 

@@ -14,6 +14,7 @@
 #include "base/verdict.h"
 #include "carom/engine/batch.h"
 #include "carom/engine/event_details.h"
+#include "carom/engine/math.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/verify.h"
 #include "carom/games/measures.h"
@@ -43,12 +44,12 @@ Json events_json(const Record& record) {
                      {"type", name(event.type)},
                      {"ball", record.tracks[static_cast<std::size_t>(event.a)].id},
                      {"other", record.partner_id(event)},
-                     {"otherName", met_name(record, event)},
+                     {"other_name", met_name(record, event)},
                      {"place", {a.after.position.x(), a.after.position.y(), a.after.position.z()}},
-                     {"speedBefore", number(a.before.velocity.norm())},
+                     {"speed_before", number(a.before.velocity.norm())},
                      {"speed", number(a.after.velocity.norm())},
                      {"closing", number(d.closing)},
-                     {"cut", number(d.cut)},
+                     {"cut_deg", number(d.cut * kDegrees)},
                      {"diamond", number(d.diamond)}};
         if (event.type == EventType::kBallCluster) {
             Json balls = Json::array();

@@ -147,37 +147,6 @@ Attempt break_of(const State& state, const Scene& scene) {
     return candidate;
 }
 
-Advice advice_of(const Attempt& candidate, const Scene& scene, bool in_hand) {
-    Advice advice;
-    advice.cue = candidate.cue;
-    advice.call = candidate.call;
-    if (in_hand) advice.place = candidate.place;
-    advice.kind = candidate.kind;
-    if (candidate.ball > 0) {
-        advice.ball = std::to_string(candidate.ball);
-        advice.pocket = scene.table.pockets[static_cast<std::size_t>(candidate.pocket)].id;
-    }
-    advice.cut_deg = candidate.cut_deg;
-    const detail::Tally& tally = candidate.tally;
-    advice.makes = share_of(tally.made, tally.shots);
-    advice.fouls = share_of(tally.fouls, tally.shots);
-    advice.worth = tally.mean();
-    if (tally.passed > 0) advice.opponent = tally.opponent / static_cast<double>(tally.passed);
-    advice.spin = candidate.spin;
-    advice.rails = candidate.rails;
-    advice.rest = candidate.rest;
-    std::vector<int> balls;
-    for (int n = 1; n < detail::kNumbers; ++n)
-        if (tally.leaves[static_cast<std::size_t>(n)] > 0) balls.push_back(n);
-    std::stable_sort(balls.begin(), balls.end(), [&](int a, int b) {
-        return tally.leaves[static_cast<std::size_t>(a)] > tally.leaves[static_cast<std::size_t>(b)];
-    });
-    constexpr std::size_t kMostLeft = 3;
-    for (std::size_t i = 0; i < std::min(kMostLeft, balls.size()); ++i)
-        advice.leaves.push_back(std::to_string(balls[i]));
-    return advice;
-}
-
 /// By the speed of the cue; the ball is about a third faster.
 const char* speed_word(double speed) {
     return speed < 0.75  ? "very soft"
@@ -197,6 +166,74 @@ std::string thickness(double cut_deg) {
                        : 1.0 - sin > 0.15 ? "quarter ball"
                                           : "thin";
     return fmt::format("{} to the {}", part, cut_deg > 0.0 ? "left" : "right");
+}
+
+std::string words_of(const Advice& advice, const Attempt& of, const Table& table) {
+    const bool deliberate = advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak;
+    std::string words = deliberate                      ? "deliberate foul: "
+                        : advice.kind == ShotKind::kPot ? ""
+                                                        : std::string(name(advice.kind)) + ": ";
+    if (of.ball > 0) {
+        const std::string& where = table.pockets[static_cast<std::size_t>(of.pocket)].name;
+        words += fmt::format("{} into {}{}, ", advice.ball, advice.pocket,
+                             where.empty() ? "" : " (" + where + ")");
+    }
+    if (!of.rails.empty()) words += of.rails + ", ";
+    const bool pot = advice.kind == ShotKind::kPot;
+    const std::string part = pot ? thickness(advice.cut_deg) : "";
+    if (pot) words += part + ", ";
+    if (!of.spin.empty()) words += (part == "full" && of.spin == "stun" ? "stop" : of.spin) + ", ";
+    constexpr double kCentre = 0.05;
+    if (std::abs(advice.cue.side) > kCentre) words += advice.cue.side > 0.0 ? "left side, " : "right side, ";
+    return words + speed_word(advice.cue.speed);
+}
+
+std::string result_words(const Advice& advice, const Attempt& of) {
+    const auto percent = [](double share) { return fmt::format("{:.0f} %", 100.0 * share); };
+    const bool ends = advice.kind == ShotKind::kSafety || advice.kind == ShotKind::kPushOut;
+    std::string words;
+    if (!ends)
+        words = fmt::format("{} {} ({:.0f} to {:.0f}), ", advice.ball.empty() ? "keeps the turn" : "pots",
+                            percent(advice.makes.value), 100.0 * advice.makes.low, 100.0 * advice.makes.high);
+    words += fmt::format("wins {}, fouls {}", percent(advice.worth), percent(advice.fouls.value));
+    if (!of.rest.empty()) words += "; cue ball rests " + of.rest;
+    if (advice.kind != ShotKind::kBreak && advice.makes.value < 1.0)
+        words += fmt::format("; {} the opponent a pot of {}", ends ? "leaves" : "a miss leaves",
+                             percent(of.tally.mean_opponent()));
+    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak)
+        words += "; no shot was found that is fair more often than not";
+    return words;
+}
+
+/// @param strike  the cue with errors
+Advice advice_of(const Attempt& candidate, const Scene& scene, bool in_hand, const Cue& strike) {
+    Advice advice;
+    advice.cue = candidate.cue;
+    advice.strike = strike;
+    advice.call = candidate.call;
+    if (in_hand) advice.place = candidate.place;
+    advice.kind = candidate.kind;
+    if (candidate.ball > 0) {
+        advice.ball = std::to_string(candidate.ball);
+        advice.pocket = scene.table.pockets[static_cast<std::size_t>(candidate.pocket)].id;
+    }
+    advice.cut_deg = candidate.cut_deg;
+    const detail::Tally& tally = candidate.tally;
+    advice.makes = share_of(tally.made, tally.shots);
+    advice.fouls = share_of(tally.fouls, tally.shots);
+    advice.worth = tally.mean();
+    std::vector<int> balls;
+    for (int n = 1; n < detail::kNumbers; ++n)
+        if (tally.leaves[static_cast<std::size_t>(n)] > 0) balls.push_back(n);
+    std::stable_sort(balls.begin(), balls.end(), [&](int a, int b) {
+        return tally.leaves[static_cast<std::size_t>(a)] > tally.leaves[static_cast<std::size_t>(b)];
+    });
+    constexpr std::size_t kMostLeft = 3;
+    for (std::size_t i = 0; i < std::min(kMostLeft, balls.size()); ++i)
+        advice.leaves.push_back(std::to_string(balls[i]));
+    advice.words = words_of(advice, candidate, scene.table);
+    advice.result = result_words(advice, candidate);
+    return advice;
 }
 
 }  // namespace
@@ -283,7 +320,8 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     std::vector<Advice> advice;
     advice.reserve(chosen.size());
     for (const Attempt* candidate : chosen)
-        advice.push_back(advice_of(*candidate, scene, in_hand || state.opening));
+        advice.push_back(advice_of(*candidate, scene, in_hand || state.opening,
+                                   with_noise(candidate->cue, skill.noise, options.seed, advice.size())));
     return advice;
 }
 
@@ -310,45 +348,6 @@ std::size_t choose(const Verdict& verdict, const Record& record, const Skill& sk
         }
     }
     return best;
-}
-
-std::string words_of(const Advice& advice, const Table& table) {
-    const bool deliberate = advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak;
-    std::string words = deliberate                      ? "deliberate foul: "
-                        : advice.kind == ShotKind::kPot ? ""
-                                                        : std::string(name(advice.kind)) + ": ";
-    if (!advice.ball.empty()) {
-        const int pocket = index_of(table.pockets, advice.pocket);
-        const std::string& where = pocket >= 0 ? table.pockets[static_cast<std::size_t>(pocket)].name : "";
-        words += fmt::format("{} into {}{}, ", advice.ball, advice.pocket,
-                             where.empty() ? "" : " (" + where + ")");
-    }
-    if (!advice.rails.empty()) words += advice.rails + ", ";
-    const bool pot = advice.kind == ShotKind::kPot;
-    const std::string part = pot ? thickness(advice.cut_deg) : "";
-    if (pot) words += part + ", ";
-    if (!advice.spin.empty())
-        words += (part == "full" && advice.spin == "stun" ? "stop" : advice.spin) + ", ";
-    constexpr double kCentre = 0.05;
-    if (std::abs(advice.cue.side) > kCentre) words += advice.cue.side > 0.0 ? "left side, " : "right side, ";
-    return words + speed_word(advice.cue.speed);
-}
-
-std::string result_words(const Advice& advice) {
-    const auto percent = [](double share) { return fmt::format("{:.0f} %", 100.0 * share); };
-    const bool ends = advice.kind == ShotKind::kSafety || advice.kind == ShotKind::kPushOut;
-    std::string words;
-    if (!ends)
-        words = fmt::format("{} {} ({:.0f} to {:.0f}), ", advice.ball.empty() ? "keeps the turn" : "pots",
-                            percent(advice.makes.value), 100.0 * advice.makes.low, 100.0 * advice.makes.high);
-    words += fmt::format("wins {}, fouls {}", percent(advice.worth), percent(advice.fouls.value));
-    if (!advice.rest.empty()) words += "; cue ball rests " + advice.rest;
-    if (advice.kind != ShotKind::kBreak && advice.makes.value < 1.0)
-        words += fmt::format("; {} the opponent a pot of {}", ends ? "leaves" : "a miss leaves",
-                             percent(advice.opponent));
-    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak)
-        words += "; no shot was found that is fair more often than not";
-    return words;
 }
 
 }  // namespace carom::games

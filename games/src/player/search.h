@@ -22,6 +22,7 @@ struct Tally {
     std::size_t passed = 0;              ///< shots after which the opponent shoots
     double worth = 0.0, opponent = 0.0;  ///< sums of the chances to win, and of the opponent's surest pots
     std::array<int, kNumbers> leaves{};  ///< how often each ball was left as the surest pot
+    double mean_opponent() const { return passed > 0 ? opponent / static_cast<double>(passed) : 0.0; }
     double mean() const { return shots > 0 ? worth / static_cast<double>(shots) : 0.0; }
 };
 
@@ -32,7 +33,9 @@ struct Attempt {
     ShotKind kind = ShotKind::kPot;
     int ball = 0, pocket = -1;  ///< number of the potted ball, index of its pocket; 0, -1: none
     double cut_deg = 0.0;
-    std::string spin, rails, rest;  ///< as in Advice
+    /// Of the shot without errors, in words: the spin at the first contact; the rails of a bank or kick; the
+    /// place where the cue ball rests, and its next ball.
+    std::string spin, rails, rest;
     Tally tally;
     /// Whether more than half of its shots are fouls.
     bool fouls() const { return 2 * tally.fouls > tally.shots; }

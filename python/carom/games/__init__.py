@@ -4,13 +4,28 @@ Pure functions, the same as in C++ (`carom/games/*.h`). A game is a loop: `new_g
 `legal`, `carom.simulate`, `judge`, a choice among the verdict's options, and `next_scene`.
 """
 
-from carom._types import Call, Foul, GameInfo, Legal, Respot, RuleOption, State, Verdict
-from carom.games._aim import Aim, PocketLine, aim_pot, bank_routes, cut_angle_deg, ghost_ball, pocket_lines
-from carom.games._noise import STRIKE, Noise, noisy
-from carom.games._player import SKILLS, Advice, Cue, Player, PlayerShot, advise
+from carom._types import (
+    Advice,
+    Aim,
+    Call,
+    Cue,
+    Foul,
+    GameInfo,
+    Legal,
+    Noise,
+    Option,
+    PocketLine,
+    Respot,
+    RuleOption,
+    Share,
+    State,
+    Verdict,
+)
+from carom.games._aim import aim_pot, bank_routes, cut_angle_deg, ghost_ball, pocket_lines
+from carom.games._noise import STRIKE, noisy
+from carom.games._player import SKILLS, Player, PlayerShot, advise
 from carom.games._rules import (
     GAMES,
-    Option,
     all_games,
     book_of,
     judge,
@@ -40,6 +55,7 @@ __all__ = [
     "PocketLine",
     "Respot",
     "RuleOption",
+    "Share",
     "State",
     "Verdict",
     "advise",

@@ -2,41 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from carom import _carom
 from carom._arguments import checked
 from carom._scene import SceneLike, as_scene
+from carom._types import Aim, PocketLine
 from carom.games._rules import _two
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-
-class PocketLine(NamedTuple):
-    """The straight paths of a ball into a pocket that touch neither cushion noses nor jaws."""
-
-    pocket: str  # id
-    towards: tuple[float, float]  # unit vector in the middle of these paths
-    width_deg: float  # the angle between the outermost paths; 0 if there is none
-    distance: float  # [m] from the ball to the point where it begins to fall
-    in_the_way: str  # the nearest ball on the middle path, or ""
-
-    @property
-    def open(self) -> bool:
-        """Whether there is such a path and no ball blocks the middle one."""
-        return self.width_deg > 0.0 and not self.in_the_way
-
-
-class Aim(NamedTuple):
-    """The result of a search for an aim."""
-
-    aim_deg: float | None  # of a strike that was played and pots the ball; if None, `why` says why
-    geometric_deg: float  # aim_pot: at the ghost ball, without throw, squirt and swerve
-    cut_deg: float  # aim_pot: the cut angle of that aim
-    cushion: str  # bank_routes: the cushion that the ball meets
-    shots: int  # the number of shots played in the search
-    why: str  # why there is no aim; "" if there is one
 
 
 @checked
@@ -64,7 +39,8 @@ def pocket_lines(scene: SceneLike, ball: str, cue_ball: str = "cue") -> list[Poc
 
     The cue ball blocks no path, because it will have moved.
     """
-    return [PocketLine(*line) for line in _carom.pocket_lines(as_scene(scene)._native, ball, cue_ball)]
+    lines: list[PocketLine] = _carom.pocket_lines(as_scene(scene)._native, ball, cue_ball)
+    return lines
 
 
 @checked
@@ -78,10 +54,12 @@ def aim_pot(scene: SceneLike, ball: str, pocket: str) -> Aim:
     Raises ValueError for a missing ball or pocket, a scene without a cue, and a shot that does not end at
     rest.
     """
-    return Aim(*_carom.aim_pot(as_scene(scene)._native, ball, pocket))
+    aim: Aim = _carom.aim_pot(as_scene(scene)._native, ball, pocket)
+    return aim
 
 
 @checked
 def bank_routes(scene: SceneLike, ball: str, pocket: str) -> list[Aim]:
     """Aims that pot a ball off one cushion, at most one per straight cushion. Otherwise like `aim_pot`."""
-    return [Aim(*aim) for aim in _carom.bank_routes(as_scene(scene)._native, ball, pocket)]
+    aims: list[Aim] = _carom.bank_routes(as_scene(scene)._native, ball, pocket)
+    return aims

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._types import Noise
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -17,30 +18,7 @@ if TYPE_CHECKING:
 STRIKE = ("speed", "aim_deg", "elevation_deg", "side", "height")
 
 
-@checked
-class Noise(NamedTuple):
-    """Standard deviations of the independent normal errors of a strike."""
-
-    speed: float = 0.0  # [m/s]
-    aim_deg: float = 0.0
-    elevation_deg: float = 0.0
-    side: float = 0.0  # of the offset [ball radii]
-    height: float = 0.0
-
-    @classmethod
-    def named(cls, name: str, radius: float = 0.028575) -> Noise:
-        """"none", "fastfiz" or "ai3603".
-
-        "fastfiz": 0.075 m/s, aim 0.125 and elevation 0.1 degrees, offset 0.5 mm. These are the defaults of
-            FastFiz, the
-        simulator of the computational pool championships.
-        "ai3603": 0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii, as in the course AI3603.
-
-        radius: of the struck ball [m]
-
-        Raises ValueError for another name.
-        """
-        return cls(*_carom.noise_by_name(name, radius))
+checked(Noise)
 
 
 @overload
@@ -69,7 +47,7 @@ def noisy(
         strikes = np.array(cue, np.float64)
         if strikes.ndim not in (1, 2) or strikes.shape[-1] != len(STRIKE):
             raise ValueError(f"cue: expected the shape (5,) or (n, 5), not {strikes.shape}")
-        _carom.add_noise(strikes.reshape(-1), tuple(sd), seed, index)
+        _carom.add_noise(strikes.reshape(-1), sd, seed, index)
         return strikes
     standard = dict(zip(STRIKE, _carom.standard_strike()))
     side, height = cue.get("offset", (standard["side"], standard["height"]))

@@ -7,39 +7,11 @@ from typing import Any, NamedTuple
 from carom import _carom
 from carom._arguments import checked
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
-from carom._types import Call, State
-from carom.games._noise import Noise, noisy
+from carom._types import Advice, Call, State
+from carom.games._noise import noisy
 
 #: The levels of a player, the weakest first.
 SKILLS: tuple[str, ...] = tuple(_carom.skills())
-
-
-class Cue(NamedTuple):
-    """A strike, as `carom.Scene` takes it with `_asdict()`."""
-
-    speed: float  # [m/s]
-    aim_deg: float
-    elevation_deg: float
-    offset: tuple[float, float]  # side and height [ball radii]
-
-
-class Advice(NamedTuple):
-    """A shot to play, and its success rate."""
-
-    words: str
-    kind: str  # "pot", "combination", "bank", "kick", "safety", "push out" or "break"
-    ball: str  # the ball it pots, and the pocket; "" for other kinds
-    pocket: str
-    cut_deg: float  # of a pot: how far the object ball turns to the left
-    cue: Cue
-    call: Call
-    place: tuple[float, float] | None  # of the cue ball, if it is in hand [m]
-    # From shots that the search has not used: how often the shot wins the turn or the game, and how often it
-    # is a foul; each with its interval of 95 %.
-    makes: tuple[float, float, float]
-    fouls: tuple[float, float, float]
-    worth: float  # mean value of the position that it leaves: 1 is a win, 0 a loss
-    leaves: list[str]  # the balls that it most often leaves as the surest pot
 
 
 @checked
@@ -60,9 +32,8 @@ def advise(
     """
     if best < 1 or shots < 0 or threads < 0:
         raise ValueError("best must be at least 1, shots and threads at least 0")
-    rows = _carom.advise(state, as_scene(scene)._native, skill, seed, best, shots, threads)
-    return [
-        Advice(*row[:5], Cue(*row[5][:3], (row[5][3], row[5][4])), row[6], *row[7:]) for row in rows]
+    advice: list[Advice] = _carom.advise(state, as_scene(scene)._native, skill, seed, best, shots, threads)
+    return advice
 
 
 class PlayerShot(NamedTuple):
@@ -93,7 +64,6 @@ class Player:
         table = as_scene(scene)
         seed = (self.seed * 1_000_003 + self._shots) % 2**63
         best = advise(state, table, self.skill, seed=seed, best=1, shots=0)[0]
-        noise = Noise(*_carom.noise_of_skill(self.skill, 0.028575))
-        cue = noisy(best.cue._asdict(), noise, self.seed, self._shots)
+        cue = noisy(best.cue._asdict(), _carom.noise_of_skill(self.skill, 0.028575), self.seed, self._shots)
         shot = scene_with_cue(cue, lambda section: _carom.struck(table._native, best.place, section))
         return PlayerShot(best.words, shot, best.call, cue, best.place)

@@ -3,31 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
-from carom import _carom, _types
+from carom import _carom
 from carom._arguments import checked
 from carom._names import GameName
 from carom._record import Record
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
-from carom._types import Call, GameInfo, Legal, Respot, RuleOption, State, Verdict
+from carom._types import Call, GameInfo, Legal, Option, RuleOption, State, Verdict
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 GAMES: tuple[GameName, ...] = get_args(GameName)
-
-
-if TYPE_CHECKING:
-    Option = _types.Option
-else:
-
-    class Option(_types.Option):
-        __doc__ = _types.Option.__doc__
-        # The hash of the judged record; "" for an option made by hand.
-        _record = ""
 
 
 def all_games() -> list[GameInfo]:
@@ -98,14 +88,7 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     game's balls.
     """
     verdict: Verdict = _carom.judge(state, record._native, call)
-    for option in verdict.options:
-        cast("Any", option)._record = record.hash()
     return verdict
-
-
-def _check_record(option: Option, record: Record) -> None:
-    if cast("Any", option)._record not in ("", record.hash()):
-        raise ValueError("the verdict belongs to another record; give the record that was judged")
 
 
 @checked
@@ -116,7 +99,6 @@ def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
 
     Raises ValueError for an option of another record.
     """
-    _check_record(option, record)
     return _carom.may_place(record._native, option, _two(place))
 
 
@@ -138,7 +120,6 @@ def next_scene(
     game, and SceneError if the result is not a valid scene.
     """
     taken = option.options[0] if isinstance(option, Verdict) else option
-    _check_record(taken, record)
     played, at = None if scene is None else as_scene(scene)._native, None if place is None else _two(place)
 
     def make(section: str) -> _carom.Scene:

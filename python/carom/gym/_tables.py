@@ -58,7 +58,7 @@ class Rules:
         cue = self.strikes.cue(act, states.xy, game.cue_ball, legal, game.radii)
         if seeds is not None and any(self.noise):
             which = np.zeros(len(cue), np.int64) if indices is None else indices
-            _carom.add_noise_each(cue.reshape(-1), tuple(self.noise), seeds, which)
+            _carom.add_noise_each(cue.reshape(-1), self.noise, seeds, which)
         return self.play(states, cue)
 
     def play(self, states: States, cue: NDArray[np.float64]) -> Rollout:

@@ -43,7 +43,7 @@ export const carom = {
   },
   games: {
     start: (game) => ({game, in_hand: "head string", points: [0, 0]}),
-    legal: () => ({first: ["1"], callable: ["1", "2"], mayPushOut: true, text: "player 1 shoots"}),
+    legal: () => ({first: ["1"], callable: ["1", "2"], may_push_out: true, text: "player 1 shoots"}),
     judge: (state, shot, announced) => ({shot, announced, options: OPTIONS, chooser: -1,
       mayPlace: (x) => x < 0.5, next: () => shot.after()}),
   },

@@ -18,7 +18,7 @@ test("without a game the balls continue from where they rest, and nothing is jud
   begin(state, START);
   judge(state);
   assert.equal(state.verdict, null);
-  assert.deepEqual(legal(state), {text: "", callable: [], mayPushOut: false});
+  assert.deepEqual(legal(state), {text: "", callable: [], may_push_out: false});
   nextShot(state);
   assert.equal(state.ball("cue").x, 0.9);
   takeBack(state);
@@ -34,7 +34,7 @@ test("a verdict leads to the next state, and undo to the one before", () => {
   assert.equal(told, 1);
   assert.deepEqual(state.game.state, OPTIONS[0].state);
   assert.deepEqual(state.game.judged.announced.pocket, "p1");
-  assert.deepEqual(state.announced, {ball: "1", pocket: "", safety: false, pushOut: false});
+  assert.deepEqual(state.announced, {ball: "1", pocket: "", safety: false, push_out: false});
   assert.equal(state.verdict, null);
   // The verdict still needs its shot.
   assert.equal(shot.freed, false);

@@ -1,7 +1,5 @@
 #include "base/verdict.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,41 +8,10 @@
 #include <vector>
 
 #include "carom/engine/math.h"
-#include "carom/interface/shape.h"
 
 namespace carom::tools {
 
 using Json = nlohmann::ordered_json;
-
-Json cue_json(const Cue& cue) {
-    return {{"speed", cue.speed},
-            {"aim_deg", cue.aim_deg},
-            {"elevation_deg", cue.elevation_deg},
-            {"offset", {cue.side, cue.height}}};
-}
-
-Json advice_json(const std::vector<games::Advice>& advice, const carom::Table& table) {
-    Json list = Json::array();
-    for (const games::Advice& a : advice) {
-        const auto share = [](const games::Share& s) { return Json{s.value, s.low, s.high}; };
-        Json place;
-        if (a.place) place = {a.place->x(), a.place->y()};
-        list.push_back({{"words", games::words_of(a, table)},
-                        {"result", games::result_words(a)},
-                        {"kind", carom::name(a.kind)},
-                        {"ball", a.ball},
-                        {"pocket", a.pocket},
-                        {"cut_deg", a.cut_deg},
-                        {"cue", cue_json(a.cue)},
-                        {"call", interface::value_of(a.call)},
-                        {"place", place},
-                        {"makes", share(a.makes)},
-                        {"fouls", share(a.fouls)},
-                        {"worth", a.worth},
-                        {"leaves", a.leaves}});
-    }
-    return list;
-}
 
 Json measure_json(const games::Measure& measure, const Record& record) {
     const games::MeasureValue value = measure.of(record);

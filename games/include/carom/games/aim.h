@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "carom/engine/row.h"
 #include "carom/engine/scene.h"
 
 namespace carom::games {
@@ -23,32 +24,52 @@ Vec2 ghost_ball(const Vec2& object, const Vec2& towards, double both);
 /// from 90 on there is no such cut.
 double cut_angle_deg(const Vec2& cue, const Vec2& ghost, const Vec2& towards);
 
-/// The straight paths of a ball into a pocket that touch neither cushion noses nor jaws. It may rub the
-/// facings behind them.
+/// The ball may rub the facings behind the noses.
 struct PocketLine {
-    int pocket = -1;              ///< index of Table::pockets
-    Vec2 towards = Vec2::Zero();  ///< unit vector in the middle of these paths
-    double width_deg = 0.0;       ///< angle between the outermost paths; 0: none
-    double distance = 0.0;        ///< [m] from the ball to where it begins to fall
-    std::string in_the_way;       ///< the nearest ball on the middle path, or ""
+    std::string pocket;
+    Vec2 towards = Vec2::Zero(), ghost = Vec2::Zero();
+    double width_deg = 0.0, distance = 0.0;
+    std::string in_the_way;
     bool open() const { return width_deg > 0.0 && in_the_way.empty(); }
     bool operator==(const PocketLine&) const = default;
 };
+constexpr auto rows_of(const PocketLine*) {
+    return described(
+        "PocketLine", "The straight paths of a ball into a pocket that touch neither cushion noses nor jaws.",
+        row<&PocketLine::pocket>("pocket", "Its id."),
+        row<&PocketLine::towards>("towards", "Unit vector in the middle of these paths."),
+        row<&PocketLine::ghost>("ghost",
+                                "Centre of the cue ball that sends the ball there, without throw [m]."),
+        row<&PocketLine::width_deg>("width_deg", "Angle between the outermost paths; 0 if there is none."),
+        row<&PocketLine::distance>("distance", "From the ball to the point where it begins to fall [m]."),
+        row<&PocketLine::in_the_way>("in_the_way", "The nearest ball on the middle path, or \"\"."),
+        row<&PocketLine::open>("open", "There is such a path, and no ball blocks the middle one."));
+}
 
 /// One line per pocket of the table. @param cue_ball a ball that blocks no path, because it will have moved
 /// @throws std::invalid_argument if the scene has no such ball
 std::vector<PocketLine> pocket_lines(const Scene& scene, std::string_view ball,
                                      std::string_view cue_ball = "cue");
 
-/// The result of a search for an aim.
 struct Aim {
-    std::optional<Cue> cue;      ///< a strike that was played and succeeded; empty: see `why`
-    double geometric_deg = 0.0;  ///< aim_pot: the aim at the ghost ball, without throw, squirt and swerve
-    double cut_deg = 0.0;        ///< aim_pot: cut angle of that aim
-    std::string cushion;         ///< bank_routes: the cushion that the ball hits
-    int shots = 0;               ///< played to find it
-    std::string why;             ///< why there is no strike, or ""
+    std::optional<double> aim_deg;
+    double geometric_deg = 0.0, cut_deg = 0.0;
+    std::string cushion;
+    int shots = 0;
+    std::string why;
+    bool operator==(const Aim&) const = default;
 };
+constexpr auto rows_of(const Aim*) {
+    return described(
+        "Aim", "The result of a search for an aim.",
+        row<&Aim::aim_deg>("aim_deg", "Of a strike that was played and pots the ball; null: see `why`."),
+        row<&Aim::geometric_deg>("geometric_deg",
+                                 "Of a pot: at the ghost ball, without throw, squirt and swerve."),
+        row<&Aim::cut_deg>("cut_deg", "Of a pot: the cut angle of that aim."),
+        row<&Aim::cushion>("cushion", "Of a bank: the cushion that the ball hits."),
+        row<&Aim::shots>("shots", "Played in the search."),
+        row<&Aim::why>("why", "Why there is no aim; \"\" if there is one."));
+}
 
 /// The aim that pots a ball into a pocket: it starts at the ghost ball, and is corrected by playing the shot
 /// until the ball runs down the middle of its paths.

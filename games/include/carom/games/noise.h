@@ -4,19 +4,23 @@
 #include <cstdint>
 #include <string_view>
 
+#include "carom/engine/row.h"
 #include "carom/engine/scene.h"
 
 namespace carom::games {
 
-/// Standard deviations of independent normal errors, in the units of Cue.
 struct Noise {
-    double speed = 0.0;          ///< [m/s]
-    double aim_deg = 0.0;        ///< [degrees]
-    double elevation_deg = 0.0;  ///< [degrees]
-    double side = 0.0;           ///< [ball radii]
-    double height = 0.0;         ///< [ball radii]
+    double speed = 0.0, aim_deg = 0.0, elevation_deg = 0.0, side = 0.0, height = 0.0;
     bool operator==(const Noise&) const = default;
 };
+constexpr auto rows_of(const Noise*) {
+    return described("Noise", "Standard deviations of the independent normal errors of a strike.",
+                     row<&Noise::speed>("speed", "[m/s]"), row<&Noise::aim_deg>("aim_deg", "[degrees]"),
+                     row<&Noise::elevation_deg>("elevation_deg", "[degrees]"),
+                     row<&Noise::side>("side", "Of the offset [ball radii]."),
+                     row<&Noise::height>("height", "Of the offset [ball radii]."))
+        .made_by_callers();
+}
 
 /// Noise by name:
 ///   "none" no errors

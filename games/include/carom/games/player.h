@@ -52,24 +52,39 @@ constexpr auto names_of(ShotKind) {
 }
 
 struct Advice {
-    Cue cue;
-    Call call;
-    std::optional<Vec2> place;  ///< of the cue ball, if it is in hand [m]
+    std::string words, result;
     ShotKind kind = ShotKind::kPot;
-    std::string ball, pocket;  ///< ids of the ball that it pots and its pocket; "" for other kinds
-    double cut_deg = 0.0;      ///< of a pot: how far the object ball turns to the left [degrees]
-    /// From AdviceOptions::fresh shots that the search has not used: how often the shot wins the turn or the
-    /// game, and how often it is a foul. All shots of a break are fresh.
-    Share makes{}, fouls{};
-    /// Mean chance to win the rack against a player of the same level [-], as estimated; for eight-ball it
-    /// only orders positions.
+    std::string ball, pocket;
+    double cut_deg = 0.0;
+    Cue cue, strike;
+    Call call;
+    std::optional<Vec2> place;
+    Share makes, fouls;
     double worth = 0.0;
-    double opponent = 0.0;  ///< mean chance of the surest pot that the opponent gets, if one shoots next
-    std::vector<std::string> leaves;  ///< the balls that it most often leaves as the surest pot, at most 3
-    /// Of the shot without errors, in words: the spin at the first contact; the rails of a bank or kick; the
-    /// place where the cue ball rests, and its next ball.
-    std::string spin, rails, rest;
+    std::vector<std::string> leaves;
+    bool operator==(const Advice&) const = default;
 };
+constexpr auto rows_of(const Advice*) {
+    return described(
+        "Advice", "A shot to play, and its success rate.",
+        row<&Advice::words>(
+            "words", "The shot: \"7 into p5 (right side pocket), half ball to the left, stun, medium\"."),
+        row<&Advice::result>("result", "Its result: \"pots 84 % (80 to 87), wins 61 %, fouls 2 %; ...\"."),
+        row<&Advice::kind>("kind", "Its kind."),
+        row<&Advice::ball>("ball", "The ball that it pots; \"\" for other kinds."),
+        row<&Advice::pocket>("pocket", "The pocket of that ball."),
+        row<&Advice::cut_deg>("cut_deg", "Of a pot: how far the object ball turns to the left."),
+        row<&Advice::cue>("cue", "The strike."),
+        row<&Advice::strike>("strike", "With random errors of the level."),
+        row<&Advice::call>("call", "For the judge."),
+        row<&Advice::place>("place", "Of the cue ball in hand [m]."),
+        row<&Advice::makes>("makes", "Of shots that the search has not used: it wins the turn or the game."),
+        row<&Advice::fouls>("fouls", "Of these shots: it is a foul."),
+        row<&Advice::worth>("worth",
+                            "Mean chance to win the rack against a player of the same level, as estimated; "
+                            "in eight-ball only an order."),
+        row<&Advice::leaves>("leaves", "The balls that it most often leaves as the surest pot, at most 3."));
+}
 
 struct AdviceOptions {
     std::uint64_t seed = 1;  ///< of the errors
@@ -94,11 +109,5 @@ Scene scene_with(const Scene& scene, const Advice& advice);
 /// The index of the best option for the player who chooses. @param record of the judged shot
 /// @throws std::invalid_argument for a game without a player
 std::size_t choose(const Verdict& verdict, const Record& record, const Skill& skill);
-
-/// The shot, such as "7 into p5 (right side pocket), half ball to the left, stun, medium".
-std::string words_of(const Advice& advice, const Table& table);
-/// Its result, such as "pots 84 % (80 to 87), wins 61 %, fouls 2 %; cue ball rests near the foot spot for the
-/// 8".
-std::string result_words(const Advice& advice);
 
 }  // namespace carom::games

@@ -25,7 +25,6 @@ struct GameRules;
 using Game = const GameRules*;
 using carom::name;
 const char* name(Game game);
-/// All games, in the order of the numbers of carom_game in C.
 std::span<const Game> all_of(Game);
 /// @throws std::invalid_argument listing the known names
 Game game_named(std::string_view name);
@@ -138,8 +137,7 @@ constexpr auto rows_of(const GameInfo*) {
         row<&GameInfo::options>("options", "Of its rules."));
 }
 const GameInfo& info_of(Game game);
-/// Of all games.
-std::vector<RuleOption> rule_options();
+std::vector<GameInfo> all_games();
 /// Chooses an option of the state's game, such as "call=eight". @throws std::invalid_argument for an unknown
 /// key or value; it lists the known ones
 void set_rule(State& state, std::string_view option);
@@ -275,6 +273,7 @@ struct Option {
     Decision decision = Decision::kPlayOn;
     State state;
     std::vector<Respot> respots;
+    std::string record{};
     bool rerack() const { return decision == Decision::kRerack || decision == Decision::kRerackForOther; }
     std::string text() const { return next_text(state); }
     bool operator==(const Option&) const = default;
@@ -285,7 +284,8 @@ constexpr auto rows_of(const Option*) {
                      row<&Option::state>("state", "Of the next shot."),
                      row<&Option::respots>("respots", "Before it."),
                      row<&Option::rerack>("rerack", "The balls are racked again."),
-                     row<&Option::text>("text", "The next shot in words."));
+                     row<&Option::text>("text", "The next shot in words."),
+                     row<&Option::record>("record", "Hash of the judged record; \"\": unknown."));
 }
 
 struct Verdict {
@@ -313,6 +313,8 @@ constexpr auto rows_of(const Verdict*) {
 /// game's balls, for a call of a ball or pocket that is not there or of a push out in another game, and for
 /// a game that is over
 Verdict judge(const State& state, const Record& record, const Call& call = {});
+/// Sets Option::record, for verdicts that are kept: functions below refuse their options with other records.
+void name_record(Verdict& verdict, const Record& record);
 
 /// The ball that the player to shoot strikes: "cue", or in carom games "white" or "yellow". In free pyramid
 /// any ball may be struck.

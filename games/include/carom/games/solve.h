@@ -86,8 +86,15 @@ struct SolveOptions {
 
 /// A share of shots, and its interval: 95 of 100 such intervals contain the true share (Wilson, 1927).
 struct Share {
-    double value, low, high;
+    double value = 0.0, low = 0.0, high = 0.0;
+    bool operator==(const Share&) const = default;
 };
+constexpr auto rows_of(const Share*) {
+    return described("Share",
+                     "A share of shots, with an interval that contains the true one 95 times in 100.",
+                     row<&Share::value>("value", "0 to 1."), row<&Share::low>("low", "Of the interval."),
+                     row<&Share::high>("high", "Of the interval."));
+}
 Share share_of(std::size_t part, std::size_t whole);
 /// The interval of a share of this number of shots.
 Share with_interval(double share, std::size_t shots);

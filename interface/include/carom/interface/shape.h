@@ -1,5 +1,6 @@
 // Types of the interface: how each is written, read and described. There is one Shape for each C++ type that
-// rows use (carom/engine/row.h). The program, carom.wasm, Python and the reference page work from it.
+// rows use (carom/engine/row.h), and for sections of scene files, whose fields are their rows. The program,
+// carom.wasm, Python, C and the reference page work from it.
 #pragma once
 
 #include <array>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "carom/engine/row.h"
+#include "carom/engine/scene.h"
 #include "carom/engine/simulate.h"
 
 namespace carom::interface {
@@ -54,12 +56,15 @@ struct Shape {
         bool may_be_nan = false;
     };
     struct Member {
-        const char *key, *meaning;
+        const char* key;
+        std::string meaning;
         Limits limits;
         bool is_needed;
         const Shape& (*shape)();
-        void* (*in)(void* object);              ///< null: computed
-        Value (*computed)(const void* object);  ///< or null
+        void* (*in)(void* object);                                        ///< null: it has the next two
+        Value (*get)(const void* object);                                 ///< or null
+        void (*set)(void* object, const Value& value, const Part& part);  ///< or null: computed
+        bool is_computed() const { return in == nullptr && set == nullptr; }
     };
 
     Kind kind;
@@ -96,6 +101,9 @@ T read_as(const Value& value, const char* name = nullptr) {
 
 /// A shot of a scene: its outcomes by name, and the state of each ball at the end.
 Value value_of(const Outcome& outcome, const Record& record, const Scene& scene);
+/// The state before the first shot. @param options  keys of a state that are not defaults
+/// @throws std::invalid_argument
+Value new_state(const std::string& game, const Value& options);
 
 /// The described types, each after those that it contains.
 std::span<const Shape* const> types();
@@ -104,7 +112,41 @@ std::string types_page();
 /// Blocks of Python, between "# begin NAME" and "# end NAME": of python/carom/_types.py and _simulate.py.
 std::string types_for_python();
 /// The same of TypeScript, with "//": of web/npm/index.d.ts.
-std::string types_for_npm();
+std::string types_for_typescript();
+
+/// A section of scene files, as an object with its keys.
+template <class T, std::size_t kCount>
+struct Section {
+    const char *name, *meaning;
+    const Field<T> (&fields)[kCount];
+};
+template <class T, std::size_t kCount>
+constexpr Section<T, kCount> section(const char* name, const Field<T> (&fields)[kCount],
+                                     const char* meaning = "") {
+    return {name, meaning, fields};
+}
+constexpr auto section_of(const Cue*) {
+    return section("Cue", kCueFields, "A strike: [cue] of a scene file.");
+}
+constexpr auto section_of(const BallStart*) {
+    return section("Ball", kBallStartFields);
+}
+constexpr auto section_of(const Table*) {
+    return section("Table", kTableFields);
+}
+constexpr auto section_of(const Cushion*) {
+    return section("Cushion", kCushionFields);
+}
+constexpr auto section_of(const Jaw*) {
+    return section("Jaw", kJawFields);
+}
+constexpr auto section_of(const Pocket*) {
+    return section("Pocket", kPocketFields);
+}
+template <class T>
+concept HasSection = requires(const T* t) {
+    section_of(t).fields;
+};
 
 namespace shapes {
 
@@ -119,8 +161,14 @@ std::size_t choice_of(const Shape& shape, const Value& value, const Part& part);
 std::int64_t whole_of(const Value& value, const Part& part, Whole range, std::int64_t least,
                       std::int64_t most);
 bool truth_of(const Value& value, const Part& part);
-double number_of(const Value& value, const Part& part, bool may_be_nan);
+double number_of(const Value& value, const Part& part, bool may_be_nan = false);
 std::string text_of(const Value& value, const Part& part);
+/// With its unit.
+std::string meaning_of(const Key& key);
+Value value_of_field(const FieldValue& field);
+FieldValue field_of(const Key& key, const Value& value, const Part& part);
+/// Whose function is Shape::Member::shape of a field.
+const Shape& (*shape_of_field(const Key& key))();
 
 template <class T>
 constexpr bool kIsArray = requires(const T& v) {
@@ -202,15 +250,45 @@ Shape make_shape() {
                              .is_needed = row.is_needed,
                              .shape = shape_of<MemberOf<T, kMember>>,
                              .in = nullptr,
-                             .computed = nullptr};
+                             .get = nullptr,
+                             .set = nullptr};
         if constexpr (kIsComputed<kMember>)
-            member.computed = [](const void* object) { return value_of((at<T>(object).*kMember)()); };
+            member.get = [](const void* object) { return value_of((at<T>(object).*kMember)()); };
         else
             member.in = [](void* object) -> void* { return &(at<T>(object).*kMember); };
         shape.rows.push_back(member);
     });
     if constexpr (requires(T & t) { complete(t); })
         shape.complete = [](void* object) { complete(at<T>(object)); };
+    return shape;
+}
+
+template <HasSection T>
+Shape make_shape() {
+    static constexpr auto kSection = section_of(static_cast<const T*>(nullptr));
+    Shape shape{.kind = Shape::Kind::kType,
+                .write = write_rows,
+                .read = read_rows,
+                .name = kSection.name,
+                .meaning = kSection.meaning};
+    [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+        (shape.rows.push_back(
+             {.key = kSection.fields[kIndex].key,
+              .meaning = meaning_of(kSection.fields[kIndex]),
+              .limits = {},
+              .is_needed = false,
+              .shape = shape_of_field(kSection.fields[kIndex]),
+              .in = nullptr,
+              .get =
+                  [](const void* from) { return value_of_field(kSection.fields[kIndex].value(at<T>(from))); },
+              .set =
+                  [](void* to, const Value& value, const Part& part) {
+                      const auto& field = kSection.fields[kIndex];
+                      field.set(at<T>(to), field_of(field, value, part));
+                  }}),
+         ...);
+    }
+    (std::make_index_sequence<std::size(kSection.fields)>());
     return shape;
 }
 

@@ -15,11 +15,11 @@
 #include "base/hand.h"
 #include "base/options.h"
 #include "base/setup.h"
-#include "base/verdict.h"
 #include "carom/engine/batch.h"
 #include "carom/engine/math.h"
 #include "carom/engine/printable.h"
 #include "carom/games/player.h"
+#include "carom/interface/shape.h"
 #include "report/table.h"
 
 namespace carom::tools {
@@ -94,13 +94,13 @@ games::Skill skill_of(const AdviseArgs& args, const Scene& scene) {
     return skill;
 }
 
-std::string advice_text(const std::vector<Advice>& advice, const carom::Table& table) {
+std::string advice_text(const std::vector<Advice>& advice) {
     std::string text;
     for (std::size_t i = 0; i < advice.size(); ++i) {
         const Advice& a = advice[i];
-        text += fmt::format("{}  {}", i + 1, games::words_of(a, table));
+        text += fmt::format("{}  {}", i + 1, a.words);
         if (a.place) text += fmt::format("; cue ball from {:.3f}, {:.3f} m", a.place->x(), a.place->y());
-        text += "\n   " + games::result_words(a) + "\n";
+        text += "\n   " + a.result + "\n";
     }
     return text;
 }
@@ -126,14 +126,13 @@ int run_advise(const AdviseArgs& args) {
         }
     }();
     if (!args.output.empty()) {
-        const std::string said =
-            fmt::format("# {}: {}.\n", next_text(state), games::words_of(advice.front(), plan.scene.table));
+        const std::string said = fmt::format("# {}: {}.\n", next_text(state), advice.front().words);
         write_report(args.output, said + scene_text(games::scene_with(plan.scene, advice.front())));
     }
     if (args.json)
-        print(advice_json(advice, plan.scene.table).dump() + "\n");
+        print(interface::value_of(advice).dump() + "\n");
     else
-        print(next_text(state) + "\n" + advice_text(advice, plan.scene.table));
+        print(next_text(state) + "\n" + advice_text(advice));
     return kOk;
 }
 

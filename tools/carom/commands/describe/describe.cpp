@@ -366,7 +366,7 @@ constexpr struct {
                 {"games", [](const Options&) { return games_text(); }},
                 {"types", [](const Options&) { return interface::types_page(); }},
                 {"types-python", [](const Options&) { return interface::types_for_python(); }},
-                {"types-npm", [](const Options&) { return interface::types_for_npm(); }},
+                {"types-typescript", [](const Options&) { return interface::types_for_typescript(); }},
                 {"events", [](const Options&) { return events_text(); }}};
 
 struct DescribeArgs {

@@ -87,6 +87,7 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
     if (call.safety && !games::info_of(before.game).has_safety)
         throw UsageError(fmt::format("--safety: {} has no called safety; leave it out", name(before.game)));
     Verdict verdict = asked(shot, [&] { return games::judge(before, record, call); });
+    name_record(verdict, record);
     const auto options = static_cast<int>(verdict.options.size());
     if (args.option > options)
         throw UsageError(fmt::format("--option {}: there {} {}", args.option, options == 1 ? "is" : "are",

@@ -6,7 +6,7 @@ import {begin, change, enter, mayLeave} from "./shots.js";
 import {infoOf, startOf, tableOf} from "./tables.js";
 import {named} from "./words.js";
 
-const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
+const NOTHING = {ball: "", pocket: "", safety: false, push_out: false};
 const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
 
 /** Begins a game with these options of its rules, or continues without one if the name is "". `match`: as
@@ -24,15 +24,15 @@ function rackUp(state, name, rules, match, first) {
   begin(state, startOf(carom, info, table, randomSeed()), {game});
 }
 
-/** The player's rights: {callable, mayPushOut}, and all of them in words. */
+/** The player's rights: {callable, may_push_out}, and all of them in words. */
 export function legal({carom, game, scene}) {
-  if (!game) return {text: "", callable: [], mayPushOut: false};
+  if (!game) return {text: "", callable: [], may_push_out: false};
   const now = game.state;
   let may;
   try {
     may = carom.games.legal(now, scene);
   } catch (error) {
-    return {text: error.reason || error.message, callable: [], mayPushOut: false};
+    return {text: error.reason || error.message, callable: [], may_push_out: false};
   }
   const score = now.points.some((x) => x !== 0) ? ` Points: ${now.points.join(" to ")}.` : "";
   const group = now.game === "eight_ball" && now.group[now.turn] !== "open"

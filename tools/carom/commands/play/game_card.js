@@ -21,13 +21,13 @@ function announcements(state) {
   const box = (what) => make("input", {type: "checkbox", onchange: (e) => announce(what)(e.target.checked)});
   const ball = select("Called ball", [], "", announce("ball"));
   const pocket = select("Called pocket", [], "", announce("pocket"));
-  const safety = box("safety"), pushOut = box("pushOut");
+  const safety = box("safety"), pushOut = box("push_out");
   const callRow = make("div", {class: "bar"}, ball, pocket, make("label", {}, safety, " safety"));
   const pushRow = make("div", {class: "bar"}, make("label", {}, pushOut, " push out"));
   const tell = () => {
     pocket.value = state.announced.pocket;
     safety.checked = state.announced.safety;
-    pushOut.checked = state.announced.pushOut;
+    pushOut.checked = state.announced.push_out;
   };
   state.on("table", () => {
     const pockets = state.scene.table.pockets.map(({id, name}) => [id, name || id]);
@@ -50,7 +50,7 @@ function announcements(state) {
   };
   state.on("starts", obvious);
   state.on("announced", () => { chosen = true; });
-  const show = ({callable: now, mayPushOut, nominates: colour}) => {
+  const show = ({callable: now, may_push_out: mayPushOut, nominates: colour}) => {
     const {announced} = state, person = !state.level && state.aiming, {preset} = state.scene.table;
     callable = now;
     nominates = Boolean(colour);
@@ -94,7 +94,7 @@ function verdictParts(state, opens) {
 const YES_NO = {true: "yes", false: "no"};
 /** A choice for each option of a game's rules, kept in `rules`. */
 function ruleChoices(state, game, rules) {
-  return state.carom.games.options(game).map(({key, values, what}) => {
+  return infoOf(state, game).options.map(({key, values, what}) => {
     const title = key.replaceAll("_", " ");
     const named = values.map((value) => [value, `${title}: ${YES_NO[value] ?? value.replaceAll("_", " ")}`]);
     const box = select(title, named, values[0], (value) => { rules[key] = value; });
@@ -156,7 +156,7 @@ function hintList(state) {
   state.on("hints", () => list.replaceChildren(...state.hints.map((hint, i) => {
     // A safety does not aim to win the turn, only to be fair.
     const scores = hint.kind !== "safety" && hint.kind !== "push out",
-      [share] = scores ? hint.makes : hint.fouls;
+      {value: share} = scores ? hint.makes : hint.fouls;
     const rate = `${(100 * (scores ? share : 1 - share)).toFixed(0)} %${scores ? "" : " fair"}`,
       mark = make("b", {}, String(i + 1));
     mark.style.setProperty("--hint", HINT_COLOURS[i]);

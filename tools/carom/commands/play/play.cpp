@@ -93,8 +93,7 @@ Json start_of(const PlayArgs& args) {
     page["lock"] = locked_keys(args.lock);
     page["scenes"] = shipped_scenes();
     page["tables"] = kTablePresets;
-    for (const games::Game game : games::all_of(games::Game{}))
-        page["games"].push_back(interface::value_of(games::info_of(game)));
+    page["games"] = interface::value_of(games::all_games());
     page["keys"] = keys_to_set();
     page["shaders"] = shaders();
     page["scene"] = "";

@@ -10,7 +10,7 @@ const HITS = {  // [Hz] tone, [s] its decay, loudness, share of noise, [m/s] of 
 export function soundOf(e) {
   if (!HITS[e.type]) return null;
   const [tone, decay, most, noise, hardest] = HITS[e.type];
-  const speed = e.closing ?? e.speedBefore ?? e.speed ?? 1, strength = Math.min(speed / hardest, 1);
+  const speed = e.closing ?? e.speed_before ?? e.speed ?? 1, strength = Math.min(speed / hardest, 1);
   return {loudness: most * Math.max(strength, 0.02) ** 0.8, tone, decay, noise};
 }
 

@@ -22,7 +22,7 @@ export class State {
       game: null, match: null, verdict: null, fired: false, resumes: false,
       // While the last shot of a game is shown again: the scene and the shot to return to.
       replayed: null,
-      announced: {ball: "", pocket: "", safety: false, pushOut: false},
+      announced: {ball: "", pocket: "", safety: false, push_out: false},
       // The thinking player: {level, hint}, or null; whether a person shoots for carom. Advice on the table.
       busy: null, yielded: false, hints: [],
       // The pointer on the table: its target, its position, and whether a picture is requested.
