@@ -25,7 +25,7 @@ constexpr double kReach = 2.0 * 0.028575;  // [m] two radii of pool balls
 struct Pair {
     Path one, two;
     double horizon;
-    Meeting truth;
+    FirstMeeting truth;
 };
 
 /// Coefficients of |difference of positions|^2 - reach^2, lowest power first.

@@ -47,7 +47,8 @@ TEST(Graze, HundredThousandPairs) {
         set_to_graze(one, two, rng.uniform(0.05, 0.9) * horizon, depth, kReach, rng);
         if (length(two.r - one.r) <= kReach) continue;
         const double got = time_to_ball(one, two, kReach);
-        const Meeting want = GrazeOracle(one.r, one.v, one.a, two.r, two.v, two.a, kReach, horizon).meet();
+        const FirstMeeting want =
+            GrazeOracle(one.r, one.v, one.a, two.r, two.v, two.a, kReach, horizon).meet();
         const bool hit = got < kNever;
         ++decided;
         if (hit != want.hit) {

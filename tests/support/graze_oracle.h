@@ -11,7 +11,7 @@ namespace carom::test {
 
 __extension__ typedef __float128 Quad;
 
-struct Meeting {
+struct FirstMeeting {
     bool hit = false;
     double time = 0.0;
     double depth = 0.0;  ///< m: how far within reach the centres get before the horizon (from the distance;
@@ -31,12 +31,12 @@ class GrazeOracle {
               vx * vx + vy * vy + rx * ax + ry * ay, vx * ax + vy * ay, (ax * ax + ay * ay) / 4};
     }
 
-    Meeting meet() const {
+    FirstMeeting meet() const {
         const Poly d1 = derivative(f_), d2 = derivative(d1), d3 = derivative(d2);
         std::vector<Quad> cuts = roots(d3, {});
         cuts = roots(d2, cuts);
         cuts = roots(d1, cuts);
-        Meeting result;
+        FirstMeeting result;
         Quad least = value(f_, 0), from = 0;
         cuts.push_back(T_);
         for (const Quad& to : cuts) {

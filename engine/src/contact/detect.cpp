@@ -378,19 +378,4 @@ double time_to_edge(const Vec2& r, const Vec2& v, const Vec2& center, double rad
     return std::max(0.0, along > 0.0 ? inside / (along + root) : (root - along) / speed2);
 }
 
-double time_to(const CushionLine& line, const Path& ball, double R, double window) {
-    return stays_off_line(ball, line, R, window) ? kNever : time_to_line(ball, line, R);
-}
-
-double time_to(const Nose& nose, const Path& ball, double R, double window) {
-    const bool apart =
-        !nose.is_arc() && stays_apart(ball.r - nose.center, ball.v, ball.a, turn_around(nose, R), window);
-    return apart ? kNever : time_to_nose(ball, nose, R);
-}
-
-double time_to(const Pocket& pocket, const Path& ball, double, double window) {
-    const bool apart = stays_apart(ball.r - pocket.center, ball.v, ball.a, pocket.radius, window);
-    return apart ? kNever : time_to_pocket(ball, pocket.center, pocket.radius);
-}
-
 }  // namespace carom

@@ -12,8 +12,8 @@
 
 #include "carom/engine/geometry.h"
 #include "carom/engine/vec.h"
-#include "contact/contact.h"
 #include "contact/roots.h"
+#include "contact/touch.h"
 
 namespace carom {
 
@@ -123,9 +123,18 @@ bool stays_off_line(const Path& ball, const CushionLine& line, double R, double 
 
 /// Time until a ball of radius R meets the part: a nose, or the circle of a pocket. kNever if a quick
 /// rejection finds that it stays away for the whole window.
-double time_to(const CushionLine& line, const Path& ball, double R, double window);
-double time_to(const Nose& nose, const Path& ball, double R, double window);
-double time_to(const Pocket& pocket, const Path& ball, double R, double window);
+inline double time_to(const CushionLine& line, const Path& ball, double R, double window) {
+    return stays_off_line(ball, line, R, window) ? kNever : time_to_line(ball, line, R);
+}
+inline double time_to(const Nose& nose, const Path& ball, double R, double window) {
+    const bool apart =
+        !nose.is_arc() && stays_apart(ball.r - nose.center, ball.v, ball.a, turn_around(nose, R), window);
+    return apart ? kNever : time_to_nose(ball, nose, R);
+}
+inline double time_to(const Pocket& pocket, const Path& ball, double, double window) {
+    const bool apart = stays_apart(ball.r - pocket.center, ball.v, ball.a, pocket.radius, window);
+    return apart ? kNever : time_to_pocket(ball, pocket.center, pocket.radius);
+}
 
 // When a flying ball touches another ball, a straight nose or a round one, by one method without polynomials.
 // The distance from the ball's centre to any of these is a convex function of position, so its second time
