@@ -500,6 +500,57 @@ export interface Aim {
   /** Why there is no aim; "" if there is one. */
   why: string;
 }
+
+/** Standard deviations of a player's independent normal errors. */
+export interface Hand {
+  /** Of the aim [degrees]. */
+  aim_deg: number;
+  /** Of the cue's speed, as a fraction of it. */
+  speed: number;
+  /** Of the tip, sideways and up [ball radii]. */
+  tip: number;
+  /** Of the elevation [degrees]. */
+  elevation_deg: number;
+}
+
+/** Standard deviations of a table's properties that a player does not know, drawn anew for every trial; all
+ * 0 for exact tables. */
+export interface Unknown {
+  /** Of mu_s and of mu_r, as a fraction. */
+  cloth: number;
+  /** Of the restitution of the cushions, as a fraction. */
+  rails: number;
+  /** Of every ball along x and y, except racked ones [m]. */
+  places: number;
+  /** Between racked balls [m]. */
+  gaps: number;
+}
+
+/** How often a ball falls into a pocket. */
+export interface Fall {
+  /** Its id. */
+  ball: string;
+  /** Its id. */
+  pocket: string;
+  /** Of the shots of the solution. */
+  share: number;
+}
+
+/** The success if one input is off. */
+export interface Cost {
+  /** Its key, or aim. */
+  input: string;
+  /** The error. */
+  by: number;
+  /** Of the error. */
+  unit: string;
+  /** Share of successes; NaN if no scene is valid there. */
+  less: number;
+  /** The same in the other direction. */
+  more: number;
+  /** In each direction. */
+  shots: number;
+}
 // end types
 
 export type GameState = State;
