@@ -49,7 +49,11 @@ const Value& carom::c::part_at(const carom_value* value, const char* path) {
         else if (!item && (i == 0 || text[i] == '.') && at->is_object() && at->contains(step))
             at = &at->at(step);
         else
-            throw BadArgument(text + ": there is no " + step + "; here is " + contents(*at));
+            throw BadArgument(std::string(text)
+                                  .append(": there is no ")
+                                  .append(step)
+                                  .append("; here is ")
+                                  .append(contents(*at)));
         i = end + (item ? 1 : 0);
     }
     return *at;

@@ -63,8 +63,8 @@ void Resolver::resolve(const Contact& contact) {
     }
 }
 
-// A ball that rolls so slowly that it stops before it has moved, by rounding, meets no other ball: as part of
-// a cluster it would keep that speed, and meet the same ball again and again.
+// A ball so slow that it stops before rounding lets it move cannot hit another one. Stop it now: a cluster
+// would preserve its speed, and the same hit would repeat.
 // @return whether one of them was such a ball; it rests now
 bool Resolver::stop_at_once(const Meeting& met) {
     bool stopped = false;
@@ -131,8 +131,8 @@ void Resolver::ball_ball(const Contact& contact) {
     resting_.go_on();
 }
 
-// A slow cluster may contain another pressed contact besides the first one. As a resting contact it drives
-// that one too; after a common bounce the two would collide again and again.
+// In a slow cluster, a second contact may also be under pressure. Make it a resting contact: otherwise both
+// would bounce, and collide again without end.
 bool Resolver::hold_in_cluster(Pressed when) {
     // Before an impact, slowly rolling balls decelerate and seem to separate; their motion after it shows
     // whether the bounce ends.
