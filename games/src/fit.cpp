@@ -23,6 +23,8 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // [noise] Larger residuals count linearly: 95 % as efficient as least squares if there are no outliers
 // (Huber, 1964).
 constexpr double kHuber = 1.345;
@@ -80,8 +82,8 @@ class Fitter {
         result.start = values;
         Trial now = *simulate_at(values, true);
         MatrixXd slopes = slopes_of(now);
-        result.trouble = doubt_of_scale(scale_of(coordinates_of(now)));
-        const bool refused = !result.trouble.empty();
+        result.message = doubt_of_scale(scale_of(coordinates_of(now)));
+        const bool refused = !result.message.empty();
         double damping = kDamping;
         while (shots_ < options_.most_shots && !result.converged && !refused) {
             const double noise = noise_of(now, slopes);
@@ -93,7 +95,7 @@ class Fitter {
             for (std::size_t k = 0; k < moved.size(); ++k) moved[k] += step[static_cast<Eigen::Index>(k)];
             const double loss = loss_of(now, noise);
             std::optional<Trial> trial = simulate_at(moved, false);
-            const double after = trial ? loss_of(*trial, noise) : std::numeric_limits<double>::infinity();
+            const double after = trial ? loss_of(*trial, noise) : kInfinity;
             const bool still = std::sqrt(step.dot(normal * step)) < kStill * noise;
             bool helps = after <= loss;
             if (helps) {
@@ -101,24 +103,24 @@ class Fitter {
                     slopes = slopes_of(*trial);
                 } catch (const DerivativeError& error) {
                     // Such as at the end of a range: a shorter step may do.
-                    result.trouble = error.what();
+                    result.message = error.what();
                     helps = false;
                 }
             }
             if (helps) {
-                result.trouble.clear();
+                result.message.clear();
                 result.converged = still || loss - after <= kDone * loss || after < kDone;
                 now = std::move(*trial);
                 damping *= kLess;
             } else {
                 // No shorter step helps: rounding, or a change in the order of events, decides.
-                if (still && result.trouble.empty()) result.converged = true;
+                if (still && result.message.empty()) result.converged = true;
                 if (still || damping > kMostDamping) break;
                 damping *= kMoreDamped;
             }
         }
-        if (!result.converged && result.trouble.empty())
-            result.trouble = shots_ >= options_.most_shots
+        if (!result.converged && result.message.empty())
+            result.message = shots_ >= options_.most_shots
                                  ? fmt::format("no convergence after {} shots", shots_)
                                  : "no step reduces the error; the tracks may have another order of events";
         finish(now, slopes, result);
@@ -128,11 +130,14 @@ class Fitter {
                                         : doubt_of_distance(moved, result.noise,
                                                             simulate_at(result.start, true)->record, points_);
             !far.empty())
-            result.trouble = far;
+            result.message = far;
         else if (result.converged)
-            result.trouble = doubt_of(moved, columns, result.noise, clock_.has_value());
-        result.converged = result.converged && result.trouble.empty();
-        if (!result.converged) result.covariance.setConstant(std::numeric_limits<double>::infinity());
+            result.message = doubt_of(moved, columns, result.noise, clock_.has_value());
+        result.converged = result.converged && result.message.empty();
+        if (result.converged)
+            result.message = "converged";
+        else
+            for (std::vector<double>& row : result.covariance) row.assign(count(), kInfinity);
         return result;
     }
 
@@ -278,7 +283,7 @@ class Fitter {
             sum += r <= kHuber ? 0.5 * r * r : kHuber * (r - 0.5 * kHuber);
             ++count;
         }
-        return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::infinity();
+        return count > 0 ? sum / static_cast<double>(count) : kInfinity;
     }
 
     /// Units of the numbers that make the diagonal of the normal matrix 1, or 0 if nothing depends on one.
@@ -349,7 +354,7 @@ class Fitter {
             else
                 lost += mode.array().square();
         }
-        result.covariance = variance * (units.asDiagonal() * inverse * units.asDiagonal());
+        const MatrixXd covariance = variance * (units.asDiagonal() * inverse * units.asDiagonal());
         const std::vector<std::string>& keys = options_.vary;
         for (Eigen::Index i = 0; i < count; ++i) {
             if (units[i] == 0.0)
@@ -366,9 +371,9 @@ class Fitter {
             }
         }
         for (Eigen::Index i = 0; i < count; ++i) {
-            if (!(lost[i] > 1e-6)) continue;
-            result.covariance.row(i).setConstant(std::numeric_limits<double>::infinity());
-            result.covariance.col(i).setConstant(std::numeric_limits<double>::infinity());
+            std::vector<double>& row = result.covariance.emplace_back();
+            for (Eigen::Index j = 0; j < count; ++j)
+                row.push_back(lost[i] > 1e-6 || lost[j] > 1e-6 ? kInfinity : covariance(i, j));
         }
     }
 
@@ -385,9 +390,10 @@ class Fitter {
 
 }  // namespace
 
-double Fit::deviation(std::size_t k) const {
-    const auto i = static_cast<Eigen::Index>(k);
-    return std::sqrt(covariance(i, i));
+std::vector<double> Fit::deviations() const {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < covariance.size(); ++k) all.push_back(std::sqrt(covariance[k][k]));
+    return all;
 }
 
 Fit fit(const Scene& scene, const std::vector<TrackPoint>& points, const FitOptions& options,

@@ -56,18 +56,20 @@ std::string in_words(const Shape& shape, const Shape::Limits& limits) {
 
 /// How a language writes types; {} is the inner type.
 struct Language {
-    const char *truth, *whole, *number, *text, *null, *game, *choice, *between, *list, *array;
+    const char *truth, *whole, *number, *text, *scene, *null, *game, *choice, *between, *numbers, *list,
+        *array;
 };
-constexpr Language kPython{"bool",     "int",         "float", "str",      "None",
-                           "GameName", "Literal[{}]", ", ",    "list[{}]", "tuple[{}]"};
+constexpr Language kPython{"bool",     "int",      "float",       "str", "Scene",
+                           "None",     "GameName", "Literal[{}]", ", ",  "NDArray[np.float64]",
+                           "list[{}]", "tuple[{}]"};
 /// Of values that callers make, which can be hashed.
 constexpr Language kFixedPython = [] {
     Language fixed = kPython;
     fixed.list = "tuple[{}, ...]";
     return fixed;
 }();
-constexpr Language kTypeScript{"boolean", "number", "number", "string", "null",
-                               "Game",    "{}",     " | ",    "{}[]",   "[{}]"};
+constexpr Language kTypeScript{"boolean", "number", "number", "string", "string", "null",
+                               "Game",    "{}",     " | ",    "{}[]",   "{}[]",   "[{}]"};
 
 std::string in_code(const Shape& shape, const Language& of) {
     switch (shape.kind) {
@@ -78,12 +80,13 @@ std::string in_code(const Shape& shape, const Language& of) {
         case Kind::kNumber:
             return of.number;
         case Kind::kText:
-            return of.text;
+            return *shape.name == '\0' ? of.text : of.scene;
         case Kind::kChoice:
             if (&shape == &shape_of<games::Game>()) return of.game;
             return fmt::format(fmt::runtime(of.choice), quoted_names(shape, of.between));
         case Kind::kList:
-            return fmt::format(fmt::runtime(of.list), in_code(shape.item(), of));
+            return fmt::format(fmt::runtime(shapes::is_numbers(shape) ? of.numbers : of.list),
+                               in_code(shape.item(), of));
         case Kind::kOptional:
             return in_code(shape.item(), of) + " | " + of.null;
         case Kind::kType:

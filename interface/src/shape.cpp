@@ -54,6 +54,11 @@ const char* plural_of(const Shape& shape) {
     }
 }
 
+bool is_numbers(const Shape& shape) {
+    if (shape.kind != Shape::Kind::kList && shape.kind != Shape::Kind::kArray) return false;
+    return shape.item().kind == Shape::Kind::kNumber || is_numbers(shape.item());
+}
+
 Value write_rows(const Shape& shape, const void* from) {
     Value all = Value::object();
     for (const Shape::Member& row : shape.rows) {

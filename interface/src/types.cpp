@@ -6,6 +6,7 @@
 
 #include "carom/engine/batch.h"
 #include "carom/games/aim.h"
+#include "carom/games/fit.h"
 #include "carom/games/noise.h"
 #include "carom/games/player.h"
 #include "carom/games/rules.h"
@@ -59,7 +60,7 @@ std::span<const Shape* const> types() {
         &shape_of<games::Noise>(),    &shape_of<games::PocketLine>(),
         &shape_of<games::Aim>(),      &shape_of<games::Hand>(),
         &shape_of<games::Unknown>(),  &shape_of<games::Fall>(),
-        &shape_of<games::Cost>(),
+        &shape_of<games::Cost>(),     &shape_of<games::Fit>(),
     };
     return kTypes;
 }

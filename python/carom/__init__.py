@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from carom import games, kernel, plot, scenes, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError, SceneNotFoundError
-from carom._fit import FitResult, fit
+from carom._fit import fit
 from carom._measures import Measure, Solution, best_break, measures, solve
 from carom._program import accuracy, margin, sensitivity
 from carom._record import Event, EventColumn, Hit, Record, TablePlan, event_columns
@@ -22,7 +22,7 @@ from carom._scene import Scene, tables
 from carom._render import render
 from carom._show import drawing, picture, shown
 from carom._simulate import Shots, ShotStatus, SimulationError, simulate, simulate_many
-from carom._types import Cost, Fall, Hand, Unknown
+from carom._types import Cost, Fall, FitResult, Hand, Unknown
 
 if TYPE_CHECKING:
     from carom import gym as gym

@@ -4,45 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
 from carom._scene import Scene, SceneLike, as_scene
+from carom._types import FitResult
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-
-class FitResult(NamedTuple):
-    """The result of `fit`, with the names of `scipy.optimize.least_squares` where it has them."""
-
-    #: The fitted values, in the order of `vary`.
-    x: NDArray[np.float64]
-    #: Their covariance; infinite for values that the tracks do not determine.
-    cov: NDArray[np.float64]
-    #: Simulated minus tracked positions [m]: (points, 2). Zero for a ball in a pocket.
-    fun: NDArray[np.float64]
-    #: Whether it converged, and if not, why.
-    success: bool
-    message: str
-    #: Typical residual of a coordinate [m], without outliers.
-    noise: float
-    #: Coordinates more than three times that off.
-    outliers: int
-    #: Shots simulated.
-    nfev: int
-    #: Warnings about values that the tracks cannot separate, a sentence each.
-    warnings: tuple[str, ...]
-    #: The scene with the fitted values.
-    scene: Scene
-
-    @property
-    def std(self) -> NDArray[np.float64]:
-        """Standard deviations of `x`."""
-        return np.sqrt(np.diag(self.cov))
+    from numpy.typing import ArrayLike
 
 
 @checked
@@ -77,7 +49,8 @@ def fit(
     if unknown:
         raise ValueError(f"ball: the scene has no ball {unknown[0]!r}; it has {', '.join(numbers)}")
     seen = np.isfinite(places).all(axis=1)
-    found = _carom.fit(
+    found: FitResult
+    found, fitted = _carom.fit(
         played._native,
         np.ascontiguousarray(times[seen]),
         np.array([numbers[name] for name in ball], np.int32)[seen],
@@ -88,16 +61,5 @@ def fit(
     for warning in found.warnings:
         warnings.warn(warning, stacklevel=3)
     residuals = np.full(places.shape, np.nan)
-    residuals[seen] = np.reshape(found.residuals, (-1, 2))
-    return FitResult(
-        x=np.array(found.values),
-        cov=np.reshape(found.covariance, (len(vary), len(vary))),
-        fun=residuals,
-        success=found.converged,
-        message=found.trouble or "converged",
-        noise=found.noise,
-        outliers=found.outliers,
-        nfev=found.shots,
-        warnings=tuple(found.warnings),
-        scene=Scene._of(found.scene),
-    )
+    residuals[seen] = found.fun
+    return found._replace(fun=residuals, scene=Scene._of(fitted))

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from carom import _carom
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from carom._scene import Scene
 
 # begin GameName
 GameName: TypeAlias = Literal["eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three",
@@ -422,3 +428,39 @@ class Cost(NamedTuple):
     #: In each direction.
     shots: int
 # end Cost
+
+
+# begin FitResult
+class FitResult(NamedTuple):
+    """A fit, with the names of `scipy.optimize.least_squares` where it has them."""
+
+    #: The fitted values, in the order of `vary`.
+    x: NDArray[np.float64]
+    #: Covariance of `x` if the model is right. Values that the tracks do not determine have infinite ones.
+    #: Correlated errors of neighbours in time enlarge it.
+    cov: NDArray[np.float64]
+    #: Of every point: simulated minus tracked [m]; 0 in a pocket.
+    fun: NDArray[np.float64]
+    #: The fit converged, and its residuals are noise.
+    success: bool
+    #: Why it failed, or "converged".
+    message: str
+    #: Typical residual of a coordinate, without outliers [m].
+    noise: float
+    #: Coordinates farther off than three times the noise.
+    outliers: int
+    #: Shots compared with the tracks; derivatives need more.
+    nfev: int
+    #: On values that the tracks cannot separate, a sentence each.
+    warnings: list[str]
+    #: The scene with the fitted values.
+    scene: Scene
+    #: Standard deviations of `x`.
+    std: NDArray[np.float64]
+    #: The values in the given scene.
+    start: NDArray[np.float64]
+    #: Of all residuals [m].
+    rms: float
+    #: Positions that count: none of a ball in a pocket.
+    points: int
+# end FitResult

@@ -1,5 +1,6 @@
 // Derivatives of shots, and fits.
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -8,12 +9,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/derivatives.h"
 #include "carom/engine/plan.h"
 #include "carom/games/fit.h"
 #include "native.h"
+#include "values.h"
 
 namespace carom::python {
 namespace {
@@ -52,25 +55,19 @@ void jacobian(const NativeRecord& r, const NativeScene* other, const std::vector
     });
 }
 
-games::Fit fit(const NativeScene& scene, const Flat<const double>& times,
-               const Flat<const std::int32_t>& balls, const Flat<const double>& places,
-               const std::vector<std::string>& vary, int most_shots) {
+/// The result, and its scene.
+std::pair<nb::any, NativeScene> fit(const NativeScene& scene, const Flat<const double>& times,
+                                    const Flat<const std::int32_t>& balls, const Flat<const double>& places,
+                                    const std::vector<std::string>& vary, int most_shots) {
     std::vector<games::TrackPoint> points;
     for (std::size_t i = 0; i < times.size(); ++i)
         points.push_back(
             {times.data()[i], balls.data()[i], {places.data()[2 * i], places.data()[2 * i + 1]}});
     const kernel::Isa isa = chosen_isa();
-    return without_gil([&] { return games::fit(*scene.scene, points, {vary, most_shots}, isa); });
-}
-
-std::vector<double> covariance(const games::Fit& f) {
-    return {f.covariance.data(), f.covariance.data() + f.covariance.size()};
-}
-
-std::vector<double> residuals(const games::Fit& f) {
-    std::vector<double> list;
-    for (const Vec2& r : f.residuals) list.insert(list.end(), {r.x(), r.y()});
-    return list;
+    const games::Fit found = without_gil([&] {
+        return games::fit(*scene.scene, points, {vary, most_shots}, isa);
+    });
+    return {given(found), with_cue("", found.scene)};
 }
 
 }  // namespace
@@ -78,17 +75,6 @@ std::vector<double> residuals(const games::Fit& f) {
 void add_derivatives(nb::module_& m) {
     m.def("jacobian", jacobian, nb::arg("record"), nb::arg("scene").none(), nb::arg("inputs"),
           nb::arg("times"), nb::arg("out").noconvert());
-    nb::class_<games::Fit>(m, "Fit")
-        .def_ro("values", &games::Fit::values)
-        .def_prop_ro("covariance", covariance)
-        .def_prop_ro("residuals", residuals)
-        .def_ro("noise", &games::Fit::noise)
-        .def_ro("outliers", &games::Fit::outliers)
-        .def_ro("shots", &games::Fit::shots)
-        .def_ro("converged", &games::Fit::converged)
-        .def_ro("trouble", &games::Fit::trouble)
-        .def_ro("warnings", &games::Fit::warnings)
-        .def_prop_ro("scene", [](const games::Fit& f) { return with_cue("", f.scene); });
     m.def("fit", fit, nb::arg("scene"), nb::arg("times"), nb::arg("balls"), nb::arg("places"),
           nb::arg("vary"), nb::arg("most_shots"));
 }

@@ -72,6 +72,8 @@ nb::object object_of(const Value& value, const Shape& shape) {
         case Kind::kList: {
             nb::list list;
             for (const Value& each : value) list.append(object_of(each, shape.item()));
+            if (interface::shapes::is_numbers(shape))
+                return nb::module_::import_("numpy").attr("array")(list);
             return list;
         }
         case Kind::kArray:

@@ -109,6 +109,11 @@ TEST(Interface, EveryTypeSurvivesJson) {
     expect_round_trips<games::PocketLine>();
 }
 
+TEST(Interface, ASceneIsItsText) {
+    const Value text = scene_text(read_scene(CAROM_SOURCE_DIR "/scenes/draw.toml"));
+    EXPECT_EQ(value_of(read_as<Scene>(text)), text);
+}
+
 TEST(Interface, KeysDifferAndHideNoMethodOfATuple) {
     for (const Shape* type : types()) {
         std::set<std::string> keys{"count", "index"};

@@ -53,6 +53,7 @@ def test_a_fit_recovers_the_numbers_of_the_tracks():
     np.testing.assert_allclose(found.x, [0.2, 2.25], rtol=1e-6)
     assert np.isnan(found.fun[10]).all() and np.nanmax(abs(found.fun)) < 1e-7
     assert found.cov.shape == (2, 2) and found.std.shape == (2,)
+    assert found.scene["cue.speed"] == found.x[1] and found.points == len(t) - 1
     with pytest.warns(UserWarning, match="balls.e_c has no effect on the tracked positions"):
         carom.fit(truth, t[:5], ["cue"] * 5, xy[:5], vary=["balls.e_c"])
     with pytest.raises(ValueError, match="no ball 'blue'"):

@@ -100,7 +100,7 @@ TEST_F(CliAnswers, AFitOfInconsistentTracksIsRefusedWithoutDeviations) {
         const ProcessResult late = fit("$1 += 0.1", keys);
         EXPECT_EQ(late.status, 1) << late.out;
         EXPECT_TRUE(contains(late.err, "clock")) << late.err;
-        EXPECT_TRUE(Json::parse(late.out).at("values").at(0).at("deviation").is_null());
+        EXPECT_TRUE(Json::parse(late.out).at("std").at(0).is_null());
     }
     for (const auto& [factor, unit] :
          {std::pair{"1000", "mm"}, std::pair{"39.3701", "inches"}, std::pair{"100", "cm"}}) {
@@ -111,8 +111,8 @@ TEST_F(CliAnswers, AFitOfInconsistentTracksIsRefusedWithoutDeviations) {
     // If the clock may vary, the fit recovers the stroke.
     const ProcessResult found = fit("$1 += 0.1", "balls.mu_s,clock");
     ASSERT_EQ(found.status, 0) << found.err;
-    EXPECT_NEAR(Json::parse(found.out).at("values").at(0).at("value").get<double>(), 0.2, 1e-5);
-    EXPECT_NEAR(Json::parse(found.out).at("values").at(1).at("value").get<double>(), 0.1, 1e-5);
+    EXPECT_NEAR(Json::parse(found.out).at("x").at(0).get<double>(), 0.2, 1e-5);
+    EXPECT_NEAR(Json::parse(found.out).at("x").at(1).get<double>(), 0.1, 1e-5);
 }
 
 TEST_F(CliAnswers, TracksMayBeginWithAByteOrderMark) {

@@ -48,11 +48,11 @@ TEST_F(CliFit, RecoversTheNumbersOfTheTracks) {
         {"fit", guess(), tracks(), "--vary", "balls.mu_s,cue.speed", "--json", "-o", file, "--csv", rows});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
-    EXPECT_TRUE(json.at("converged").get<bool>());
-    EXPECT_NEAR(json.at("values").at(0).at("value").get<double>(), 0.2, 1e-7);
-    EXPECT_NEAR(json.at("values").at(1).at("value").get<double>(), 2.25, 1e-7);
-    EXPECT_LT(json.at("rms_m").get<double>(), 1e-8);
-    EXPECT_EQ(json.at("covariance").size(), 2u);
+    EXPECT_TRUE(json.at("success").get<bool>());
+    EXPECT_NEAR(json.at("x").at(0).get<double>(), 0.2, 1e-7);
+    EXPECT_NEAR(json.at("x").at(1).get<double>(), 2.25, 1e-7);
+    EXPECT_LT(json.at("rms").get<double>(), 1e-8);
+    EXPECT_EQ(json.at("cov").size(), 2u);
     EXPECT_NEAR(read_scene(file).balls.mu_s, 0.2, 1e-7);
     EXPECT_TRUE(contains(read_file(rows), "t,ball,x,y,dx,dy\n0,cue,0.6,1.94,"));
 }

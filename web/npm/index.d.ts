@@ -551,6 +551,39 @@ export interface Cost {
   /** In each direction. */
   shots: number;
 }
+
+/** A fit, with the names of `scipy.optimize.least_squares` where it has them. */
+export interface FitResult {
+  /** The fitted values, in the order of `vary`. */
+  x: number[];
+  /** Covariance of `x` if the model is right. Values that the tracks do not determine have infinite ones.
+   * Correlated errors of neighbours in time enlarge it. */
+  cov: number[][];
+  /** Of every point: simulated minus tracked [m]; 0 in a pocket. */
+  fun: [number, number][];
+  /** The fit converged, and its residuals are noise. */
+  success: boolean;
+  /** Why it failed, or "converged". */
+  message: string;
+  /** Typical residual of a coordinate, without outliers [m]. */
+  noise: number;
+  /** Coordinates farther off than three times the noise. */
+  outliers: number;
+  /** Shots compared with the tracks; derivatives need more. */
+  nfev: number;
+  /** On values that the tracks cannot separate, a sentence each. */
+  warnings: string[];
+  /** The scene with the fitted values. */
+  scene: string;
+  /** Standard deviations of `x`. */
+  std: number[];
+  /** The values in the given scene. */
+  start: number[];
+  /** Of all residuals [m]. */
+  rms: number;
+  /** Positions that count: none of a ball in a pocket. */
+  points: number;
+}
 // end types
 
 export type GameState = State;

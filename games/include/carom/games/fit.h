@@ -2,11 +2,11 @@
 // (carom/engine/derivatives.h), Levenberg-Marquardt damping, and Huber's loss against outliers.
 #pragma once
 
-#include <Eigen/Core>
-#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "carom/engine/row.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/isa.h"
 
@@ -26,26 +26,43 @@ struct FitOptions {
 };
 
 struct Fit {
-    std::vector<double> values, start;  ///< in the order of FitOptions::vary
-    /// Covariance of the values if the model is right. Rows and columns of values that the tracks do not
-    /// determine are infinite, and all are if the fit failed. Correlated errors of neighbours in time enlarge
-    /// it.
-    Eigen::MatrixXd covariance;
-    double deviation(std::size_t k) const;
-    double noise = 0.0;        ///< [m] typical residual of a coordinate, without outliers
-    double rms = 0.0;          ///< [m] of all residuals
-    std::size_t points = 0;    ///< that count: not of a ball in a pocket
-    std::size_t outliers = 0;  ///< coordinates farther away than three times the noise
-    int shots = 0;             ///< compared with the tracks; derivatives need more
-    /// Whether the fit converged and its residuals are noise.
+    std::vector<double> values;
+    std::vector<std::vector<double>> covariance;
+    std::vector<Vec2> residuals;
     bool converged = false;
-    /// Why not.
-    std::string trouble;
-    /// Warnings about values that the tracks cannot separate, a sentence each.
+    std::string message;
+    double noise = 0.0;
+    std::uint32_t outliers = 0;
+    int shots = 0;
     std::vector<std::string> warnings;
-    std::vector<Vec2> residuals;  ///< [m] of every point: simulated minus tracked; zero if it does not count
-    Scene scene;                  ///< with the values
+    Scene scene;
+    std::vector<double> start;
+    double rms = 0.0;
+    std::uint32_t points = 0;
+    std::vector<double> deviations() const;
 };
+constexpr auto rows_of(const Fit*) {
+    return described(
+        "FitResult", "A fit, with the names of `scipy.optimize.least_squares` where it has them.",
+        row<&Fit::values>("x", "The fitted values, in the order of `vary`."),
+        row<&Fit::covariance>(
+            "cov",
+            "Covariance of `x` if the model is right. Values that the tracks do not "
+            "determine have infinite ones. Correlated errors of neighbours in time enlarge it.")
+            .or_nan(),
+        row<&Fit::residuals>("fun", "Of every point: simulated minus tracked [m]; 0 in a pocket."),
+        row<&Fit::converged>("success", "The fit converged, and its residuals are noise."),
+        row<&Fit::message>("message", "Why it failed, or \"converged\"."),
+        row<&Fit::noise>("noise", "Typical residual of a coordinate, without outliers [m]."),
+        row<&Fit::outliers>("outliers", "Coordinates farther off than three times the noise."),
+        row<&Fit::shots>("nfev", "Shots compared with the tracks; derivatives need more."),
+        row<&Fit::warnings>("warnings", "On values that the tracks cannot separate, a sentence each."),
+        row<&Fit::scene>("scene", "The scene with the fitted values."),
+        row<&Fit::deviations>("std", "Standard deviations of `x`.").or_nan(),
+        row<&Fit::start>("start", "The values in the given scene."),
+        row<&Fit::rms>("rms", "Of all residuals [m]."),
+        row<&Fit::points>("points", "Positions that count: none of a ball in a pocket."));
+}
 
 /// @param scene  the start of the fit; its balls should meet the same things in the same order as in the
 /// tracks

@@ -70,7 +70,7 @@ struct Shape {
     Kind kind;
     Value (*write)(const Shape& shape, const void* from);
     void (*read)(const Shape& shape, const Value& value, const Part& part, const Limits& limits, void* to);
-    const char *name = "", *meaning = "";      ///< of a described type
+    const char *name = "", *meaning = "";      ///< of a described type; "Scene" of the text of one
     bool is_made_by_callers = false;           ///< the same
     Value (*default_value)() = nullptr;        ///< the same
     std::vector<Member> rows{};                ///< the same
@@ -151,6 +151,8 @@ concept HasSection = requires(const T* t) {
 namespace shapes {
 
 [[noreturn]] void refuse(const Part& part, const std::string& fault);
+/// Whether a value is a list of numbers, or of such lists.
+bool is_numbers(const Shape& shape);
 /// The expected items of a list: "whole numbers".
 const char* plural_of(const Shape& shape);
 Value write_rows(const Shape& shape, const void* from);
@@ -351,6 +353,16 @@ requires(kIsList<T> || kIsArray<T>) Shape make_shape() {
         .item = shape_of<Item>};
     if constexpr (kIsArray<T>) shape.count = static_cast<std::size_t>(T{}.size());
     return shape;
+}
+
+/// The text of a scene file.
+template <class T>
+requires std::is_same_v<T, Scene> Shape make_shape() {
+    return {.kind = Shape::Kind::kText,
+            .write = [](const Shape&, const void* from) -> Value { return scene_text(at<T>(from)); },
+            .read = [](const Shape&, const Value& value, const Part& part, const Shape::Limits&,
+                       void* to) { at<T>(to) = parse_scene(text_of(value, part), "scene"); },
+            .name = "Scene"};
 }
 
 template <class T>

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -15,13 +14,12 @@
 #include "base/options.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"
+#include "carom/interface/shape.h"
 #include "commands/fit/tracks.h"
 #include "report/table.h"
 
 namespace carom::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct FitArgs {
     std::string scene, tracks, output, csv;
@@ -45,8 +43,9 @@ std::vector<std::string> keys_of(const std::vector<std::string>& options) {
 Table values_table(const games::Fit& fit, const std::vector<std::string>& keys) {
     Table table(Column("key", "", "<28"), Column("value", "value", ">14.6g"),
                 Column("deviation", "+-", ">12.2g"), Column("start", "start", ">14.6g"));
+    const std::vector<double> deviations = fit.deviations();
     for (std::size_t k = 0; k < keys.size(); ++k) {
-        const double deviation = fit.deviation(k);
+        const double deviation = deviations[k];
         table.add(
             {keys[k], fit.values[k], std::isfinite(deviation) ? Cell(deviation) : Cell(), fit.start[k]});
     }
@@ -61,17 +60,6 @@ std::string residuals_csv(const games::Fit& fit, const std::vector<games::TrackP
     return table_csv(table);
 }
 
-Json covariance_json(const games::Fit& fit) {
-    Json rows = Json::array();
-    for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
-        Json row = Json::array();
-        for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j)
-            row.push_back(std::isfinite(fit.covariance(i, j)) ? Json(fit.covariance(i, j)) : Json());
-        rows.push_back(row);
-    }
-    return rows;
-}
-
 int run(const FitArgs& args) {
     const std::vector<std::string> keys = keys_of(args.vary);
     const Plan plan = plan_scene(args.scene);
@@ -83,23 +71,13 @@ int run(const FitArgs& args) {
         throw UsageError(fmt::format("--vary {}", error.what()));
     }
     for (const std::string& warning : fit.warnings) message(warning);
-    if (!fit.converged) message("the fit failed: " + fit.trouble);
+    if (!fit.converged) message("the fit failed: " + fit.message);
     write_report(args.output,
                  fmt::format("# Fitted by carom to {}\n{}", harmless(args.tracks), scene_text(fit.scene)));
     write_report(args.csv, residuals_csv(fit, points));
     const Table table = values_table(fit, keys);
     if (args.json)
-        print(Json{{"converged", fit.converged},
-                   {"values", table_json(table)},
-                   {"covariance", covariance_json(fit)},
-                   {"noise_m", fit.noise},
-                   {"rms_m", fit.rms},
-                   {"points", fit.points},
-                   {"outliers", fit.outliers},
-                   {"shots", fit.shots},
-                   {"warnings", fit.warnings}}
-                  .dump() +
-              "\n");
+        print(interface::value_of(fit).dump() + "\n");
     else
         print(table_text(table) +
               fmt::format("\n{} of {}: typically {:.3g} mm off, {} beyond three times that; {}\n",
