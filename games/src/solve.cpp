@@ -60,7 +60,7 @@ class Solver {
     Solver(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options)
         : trials_(scene, want, isa, options), options_(options) {}
 
-    std::vector<Solution> run(std::vector<Share>* starts) {
+    std::vector<Solution> run(std::vector<double>* starts) {
         std::vector<Candidate> best;
         for (std::size_t start = 0; start < kStarts; ++start) {
             std::vector<Candidate> found = look();
@@ -68,7 +68,7 @@ class Solver {
                 found = breed(std::move(found), generation, kStarts);
             std::vector<Candidate> first(found.begin(), found.begin() + 1);
             trials_.play(first, std::max(first[0].shots, kCompare));
-            if (starts != nullptr) starts->push_back(share_of(first[0].successes, first[0].shots));
+            if (starts != nullptr) starts->push_back(share_of(first[0].successes, first[0].shots).value);
             best.insert(best.end(), found.begin(), found.end());
         }
         for (int generation = kApart; generation < kGenerations; ++generation)
@@ -390,7 +390,7 @@ std::vector<Choice> default_choices() {
 }
 
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
-                            const SolveOptions& options, std::vector<Share>* starts) {
+                            const SolveOptions& options, std::vector<double>* starts) {
     return Solver(scene, want, isa, options).run(starts);
 }
 

@@ -67,10 +67,8 @@ class Solution(NamedTuple):
         return f"<carom.Solution: success {success}; {values}>"
 
 
-def _solutions(keys: Sequence[str], rows: Sequence[tuple[Any, ...]]) -> list[Solution]:
-    return [
-        Solution(success, interval, shots, dict(zip(keys, values)), falls, costs, Scene._of(scene), *exact)
-        for success, interval, shots, values, falls, costs, scene, exact in rows]
+def _solutions(rows: Sequence[tuple[Any, ...]]) -> list[Solution]:
+    return [Solution(*row)._replace(scene=Scene._of(row[6])) for row in rows]
 
 
 def _limits(shots: int, best: int, seed: int, threads: int, hand: Hand, unknown: Unknown) -> None:
@@ -140,15 +138,9 @@ def solve(
         raise ValueError(f"layouts={layouts}: expected 0 to 100000")
     choices = _carom.default_choices() if vary is None else []
     choices += [(key, *_range(key, ends)) for key, ends in (vary or {}).items()]
-    rows = _carom.solve(as_scene(scene)._native, want, game, choices, hand, unknown, layouts,
-                        shots, best, seed, threads, exact)
-    found = _solutions([key for key, _, _ in choices], rows)
-    # An exact shot has an aim instead of a hit, and a speed of the cue instead of the ball's.
-    return [
-        s if not exact or s.trouble else s._replace(
-            values={"cue.aim_deg" if key.startswith("hit.") else
-                    "cue.speed" if key == "cue.ball_speed" else key: x for key, x in s.values.items()})
-        for s in found]
+    return _solutions(
+        _carom.solve(as_scene(scene)._native, want, game, choices, hand, unknown, layouts, shots, best, seed,
+                     threads, exact))
 
 
 @checked
@@ -179,6 +171,6 @@ def best_break(
     """
     _limits(shots, best, seed, threads, hand, unknown)
     how = rack if isinstance(rack, str) else f"gap={float(rack)!r}"
-    keys, _, _, rows = _carom.best_break(game, table, how, float(radius_sd), float(speed_max), box,
-                                         hand, unknown, shots, best, seed, threads)
-    return _solutions(keys, rows)
+    return _solutions(
+        _carom.best_break(game, table, how, float(radius_sd), float(speed_max), box, hand, unknown, shots,
+                          best, seed, threads))

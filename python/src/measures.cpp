@@ -91,11 +91,9 @@ std::pair<games::MeasureValue, bool> measured(const NativeRecord& r, const Nativ
 }
 
 using ChoiceRow = std::tuple<std::string, double, double>;
-/// Share of successes with its interval, shots, values, falls, costs, scene, and of an exact one the miss [m]
-/// and why it is not smaller; the share on exact tables, and the share of the best of each search.
-using SolutionRow =
-    std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>, nb::any, nb::any,
-               NativeScene, std::tuple<double, std::string, double, std::vector<double>>>;
+/// The members of carom.Solution.
+using SolutionRow = std::tuple<double, std::pair<double, double>, std::size_t, nb::any, nb::any, nb::any,
+                               NativeScene, double, std::string, double, std::vector<double>>;
 
 games::SolveOptions options_of(nb::handle hand, nb::handle unknown, std::size_t shots, std::size_t best,
                                std::uint64_t seed, int threads) {
@@ -111,34 +109,33 @@ games::SolveOptions options_of(nb::handle hand, nb::handle unknown, std::size_t 
 
 std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, kernel::Isa isa,
                                games::SolveOptions options, bool exact = false) {
-    std::vector<games::Refined> refined;
-    std::vector<games::Share> starts;
+    std::vector<games::Exact> moved;
+    std::vector<double> searches;
     const std::vector<games::Solution> solutions = interruptible([&](std::function<bool()> stop) {
         options.stop = std::move(stop);
         if (exact && want.places().empty())
             throw std::invalid_argument(
                 "exact=True: the goal has no place; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
-        std::vector<games::Solution> best = games::solve(scene, want, isa, options, &starts);
-        for (std::size_t i = 0; exact && i < best.size(); ++i) {
-            games::Exact moved = games::exact(best[i], want, isa, options);
-            if (moved.solution) best[i] = std::move(*moved.solution);
-            refined.push_back(std::move(moved.refined));
-        }
+        std::vector<games::Solution> best = games::solve(scene, want, isa, options, &searches);
+        for (std::size_t i = 0; exact && i < best.size(); ++i)
+            moved.push_back(games::exact(best[i], want, isa, options));
         return best;
     });
-    std::vector<double> searches;
-    for (const games::Share& start : starts) searches.push_back(start.value);
     std::vector<SolutionRow> rows;
     for (std::size_t i = 0; i < solutions.size(); ++i) {
-        const games::Solution& solution = solutions[i];
-        const std::string text = scene_text(solution.scene);
+        const bool is_moved = exact && moved[i].solution;
+        const games::Solution& solution = is_moved ? *moved[i].solution : solutions[i];
+        const std::vector<games::Choice>& choices = is_moved ? moved[i].choices : options.choices;
+        nb::dict values;
+        for (std::size_t k = 0; k < choices.size(); ++k) values[choices[k].key.c_str()] = solution.values[k];
         const games::Share share = games::share_of(solution.successes, solution.shots);
-        rows.emplace_back(share.value, std::pair(share.low, share.high), solution.shots, solution.values,
-                          given(solution.falls), given(solution.costs),
-                          NativeScene{std::make_shared<const Scene>(std::move(solution.scene)), text},
-                          std::tuple(exact ? refined[i].miss : std::numeric_limits<double>::quiet_NaN(),
-                                     exact ? refined[i].trouble : "",
-                                     games::share_of(solution.exact, solution.shots).value, searches));
+        rows.emplace_back(
+            share.value, std::pair(share.low, share.high), solution.shots, nb::borrow<nb::any>(values),
+            given(solution.falls), given(solution.costs),
+            NativeScene{std::make_shared<const Scene>(solution.scene), scene_text(solution.scene)},
+            exact ? moved[i].refined.miss : std::numeric_limits<double>::quiet_NaN(),
+            exact ? moved[i].refined.trouble : "", games::share_of(solution.exact, solution.shots).value,
+            searches);
     }
     return rows;
 }
@@ -156,11 +153,10 @@ std::vector<SolutionRow> solve(const NativeScene& native, const std::string& wan
                  exact);
 }
 
-/// The searched keys, the goal, the speed of the ball for each m/s of the cue, the solutions.
-std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRow>> best_break(
-    const std::string& game, const std::string& table, const std::string& rack, double radius_sd,
-    double speed_max, bool box, nb::handle hand, nb::handle unknown, std::size_t shots, std::size_t best,
-    std::uint64_t seed, int threads) {
+std::vector<SolutionRow> best_break(const std::string& game, const std::string& table,
+                                    const std::string& rack, double radius_sd, double speed_max, bool box,
+                                    nb::handle hand, nb::handle unknown, std::size_t shots, std::size_t best,
+                                    std::uint64_t seed, int threads) {
     games::BreakOptions wanted{game, table, rack, radius_sd, speed_max, box, seed};
     games::BreakSearch search;
     try {
@@ -171,11 +167,8 @@ std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRo
     games::SolveOptions options = options_of(hand, unknown, shots, best, seed, threads);
     options.choices = search.choices;
     options.racks = search.racks;
-    std::vector<std::string> keys;
-    for (const games::Choice& choice : search.choices) keys.push_back(choice.key);
     const games::Measure want(search.want, search.scene, search.game);
-    return {keys, search.want, search.ball_speed,
-            found(search.scene, want, chosen_isa(), std::move(options))};
+    return found(search.scene, want, chosen_isa(), std::move(options));
 }
 
 }  // namespace

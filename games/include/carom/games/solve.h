@@ -156,6 +156,6 @@ SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa,
 /// @throws std::invalid_argument for a key that names no number, an invalid range, or a goal that does not
 /// apply to the shots
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
-                            const SolveOptions& options, std::vector<Share>* starts = nullptr);
+                            const SolveOptions& options, std::vector<double>* starts = nullptr);
 
 }  // namespace carom::games

@@ -73,7 +73,7 @@ int run(const BreakArgs& args) {
     const std::string& game = args.wanted.game;
     const games::BreakSearch asked = read_break(args);
     const Search what{asked.scene, "break of " + game, asked.want, asked.game, asked.choices, asked.racks};
-    std::vector<games::Share> starts;
+    std::vector<double> starts;
     const std::vector<Solution> found = search(what, args.search, starts);
     const std::string title = fmt::format("{} break, {} rack", game, args.wanted.rack);
     plot_best(what, found[0], title, args.search);
@@ -97,7 +97,7 @@ int run(const BreakArgs& args) {
                    {"hand", args.search.hand},
                    {"unknown", args.search.unknown},
                    {"seed", args.search.seed},
-                   {"searches", starts_json(starts)},
+                   {"searches", starts},
                    {"solutions", solutions_json(found, asked.choices)}}
                   .dump() +
               "\n");

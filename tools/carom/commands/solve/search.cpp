@@ -27,20 +27,6 @@ using Json = nlohmann::ordered_json;
 using games::Choice;
 using games::Solution;
 
-Json as_json(const Solution& solution, const std::vector<Choice>& choices) {
-    const Share share = share_of(solution.successes, solution.shots);
-    Json values = Json::object();
-    for (std::size_t k = 0; k < choices.size(); ++k) values[choices[k].key] = solution.values[k];
-    return {{"success", share.value},
-            {"interval", {share.low, share.high}},
-            {"shots", solution.shots},
-            {"values", values},
-            {"falls", interface::value_of(solution.falls)},
-            {"costs", interface::value_of(solution.costs)},
-            {"scene", scene_text(solution.scene)},
-            {"exact_success", share_of(solution.exact, solution.shots).value}};
-}
-
 }  // namespace
 
 void add_search(Options& command, SearchArgs& args) {
@@ -96,7 +82,7 @@ auto played(const Search& what, const SearchArgs& args, const char* title, Play&
 
 }  // namespace
 
-std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<games::Share>& starts,
+std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<double>& starts,
                              std::vector<games::Exact>* exact) {
     if (!args.plot.empty()) {
         diagram_format(args.plot);
@@ -130,23 +116,17 @@ void plot_best(const Search& what, const Solution& best, const std::string& titl
     write_report(args.plot, draw_plot(plot, diagram_format(args.plot), {shot}, style));
 }
 
-std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& starts) {
+std::string lead_text(const SearchArgs& args, const std::vector<double>& starts) {
     std::string text =
         read_unknown(args.unknown) == games::kExactTable
             ? "unknown: nothing, exact tables\n"
             : fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
     std::vector<std::string> rates;
     rates.reserve(starts.size());
-    for (const games::Share& share : starts) rates.push_back(fmt::format("{:.0f}", 100.0 * share.value));
+    for (const double share : starts) rates.push_back(fmt::format("{:.0f}", 100.0 * share));
     return text +
            fmt::format("searches from {} places, on their own so far: {} %; there may be a better shot\n",
                        rates.size(), fmt::join(rates, " and "));
-}
-
-Json starts_json(const std::vector<games::Share>& starts) {
-    Json rates = Json::array();
-    for (const games::Share& share : starts) rates.push_back(share.value);
-    return rates;
 }
 
 std::string rates_text(const Solution& solution, const char* what, const SearchArgs& args) {
@@ -184,7 +164,19 @@ std::string costs_text(const Solution& solution) {
 
 Json solutions_json(const std::vector<Solution>& solutions, const std::vector<Choice>& choices) {
     Json all = Json::array();
-    for (const Solution& solution : solutions) all.push_back(as_json(solution, choices));
+    for (const Solution& solution : solutions) {
+        const Share share = share_of(solution.successes, solution.shots);
+        Json values = Json::object();
+        for (std::size_t k = 0; k < choices.size(); ++k) values[choices[k].key] = solution.values[k];
+        all.push_back({{"success", share.value},
+                       {"interval", {share.low, share.high}},
+                       {"shots", solution.shots},
+                       {"values", values},
+                       {"falls", interface::value_of(solution.falls)},
+                       {"costs", interface::value_of(solution.costs)},
+                       {"scene", scene_text(solution.scene)},
+                       {"exact_success", share_of(solution.exact, solution.shots).value}});
+    }
     return all;
 }
 

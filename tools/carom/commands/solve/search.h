@@ -35,8 +35,7 @@ struct Search {
 /// Searches with a progress bar. @param starts  receives the success of the best of each search, as solve()
 /// @param exact  if not null, the found shots are refined, and the results are stored there
 /// @throws UsageError, Interrupted
-std::vector<games::Solution> search(const Search& what, const SearchArgs& args,
-                                    std::vector<games::Share>& starts,
+std::vector<games::Solution> search(const Search& what, const SearchArgs& args, std::vector<double>& starts,
                                     std::vector<games::Exact>* exact = nullptr);
 
 /// Writes the picture requested by args.plot: the shot, and success over its two strongest inputs.
@@ -44,8 +43,7 @@ void plot_best(const Search& what, const games::Solution& best, const std::strin
                const SearchArgs& args);
 
 /// The lines on the drawn properties, and on how far apart the searches were.
-std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& starts);
-nlohmann::ordered_json starts_json(const std::vector<games::Share>& starts);
+std::string lead_text(const SearchArgs& args, const std::vector<double>& starts);
 /// "77.40 %  (76.32 to 78.44)  of 6000 shots", and the rate on exact tables.
 std::string rates_text(const games::Solution& solution, const char* what, const SearchArgs& args);
 

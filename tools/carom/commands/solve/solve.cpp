@@ -95,7 +95,7 @@ int run(const SolveArgs& args) {
     if (args.exact && racks)
         throw UsageError("--exact: the racks differ, so no shot is exact for all; use --layouts 1");
     std::vector<games::Exact> exact;
-    std::vector<games::Share> starts;
+    std::vector<double> starts;
     const Search asked{plan.scene, args.scene, want, game, choices, racks};
     const std::vector<Solution> found = search(asked, args.search, starts, args.exact ? &exact : nullptr);
     const bool is_exact = !exact.empty() && exact[0].solution;
@@ -107,7 +107,7 @@ int run(const SolveArgs& args) {
                  {"hand", args.search.hand},
                  {"unknown", args.search.unknown},
                  {"seed", args.search.seed},
-                 {"searches", starts_json(starts)},
+                 {"searches", starts},
                  {"solutions", solutions_json(found, choices)}};
         for (const games::Exact& e : exact) {
             Json row{{"miss", std::isfinite(e.refined.miss) ? Json(e.refined.miss) : Json()},
