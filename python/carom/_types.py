@@ -436,8 +436,8 @@ class FitResult(NamedTuple):
 
     #: The fitted values, in the order of `vary`.
     x: NDArray[np.float64]
-    #: Covariance of `x` if the model is right. Values that the tracks do not determine have infinite ones.
-    #: Correlated errors of neighbours in time enlarge it.
+    #: Covariance of `x` if the model is right. Infinite for values that the tracks do not determine, and for
+    #: all if the fit failed. Correlated errors of neighbours in time enlarge it.
     cov: NDArray[np.float64]
     #: Of every point: simulated minus tracked [m]; 0 in a pocket.
     fun: NDArray[np.float64]

@@ -47,8 +47,8 @@ constexpr auto rows_of(const Fit*) {
         row<&Fit::values>("x", "The fitted values, in the order of `vary`."),
         row<&Fit::covariance>(
             "cov",
-            "Covariance of `x` if the model is right. Values that the tracks do not "
-            "determine have infinite ones. Correlated errors of neighbours in time enlarge it.")
+            "Covariance of `x` if the model is right. Infinite for values that the tracks do not determine, "
+            "and for all if the fit failed. Correlated errors of neighbours in time enlarge it.")
             .or_nan(),
         row<&Fit::residuals>("fun", "Of every point: simulated minus tracked [m]; 0 in a pocket."),
         row<&Fit::converged>("success", "The fit converged, and its residuals are noise."),
