@@ -291,8 +291,10 @@ std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, doubl
     ContactReference reference(cluster, law);
     const double time = reference.run_to_end(look_ahead, time_limit);
     if (time < 0.0) return -1;
-    std::ranges::copy(reference.motion(), phase.motion);
-    if (phase.moved != nullptr) std::ranges::copy(reference.moved(), phase.moved);
+    // Emscripten's library has no std::ranges::copy.
+    const auto motion = reference.motion(), moved = reference.moved();
+    std::copy(motion.begin(), motion.end(), phase.motion);
+    if (phase.moved != nullptr) std::copy(moved.begin(), moved.end(), phase.moved);
     if (phase.time != nullptr) *phase.time = time;
     return static_cast<std::int64_t>(6.0 * time / kShort);
 }
