@@ -166,7 +166,8 @@ test("names with spaces, other letters and backslashes, and lines that end with 
 
 test("the output may go to a pipe that closes", {skip: skip || onWindows}, () => {
   const shell = `"$@" | head -c 1; exit "\${PIPESTATUS[0]}"`;
-  const args = ["simulate", "snooker_break.toml", "-o", "/dev/stdout"];
+  // More than a pipe holds: a shorter record may be written before the reader is gone.
+  const args = ["simulate", "eight_ball_break.toml", "-o", "/dev/stdout"];
   assert.equal(inFolder("node", "bash", ["-c", shell, "bash", ...NODE, installed, ...args]).status,
     inFolder("native", "bash", ["-c", shell, "bash", PROGRAM, ...args]).status);
 });
