@@ -21,12 +21,11 @@
 namespace carom::python {
 namespace {
 
-/// Runs without the GIL. @throws nb::value_error if there is no derivative
+/// unlocked(), for derivatives. @throws nb::value_error if there is none
 template <class Work>
-auto without_gil(Work&& work) {
+auto differentiated(Work&& work) {
     try {
-        const nb::gil_scoped_release no_gil;
-        return work();
+        return unlocked(work);
     } catch (const DerivativeError& error) {
         throw nb::value_error(error.what());
     }
@@ -38,7 +37,7 @@ void jacobian(const NativeRecord& r, const NativeScene* other, const std::vector
     const Scene& scene = scene_of(r, other);
     const kernel::Isa isa = chosen_isa();
     double* at = out.data();
-    without_gil([&] {
+    differentiated([&] {
         const Derivatives by(make_plan(scene, isa), *r.record, inputs,
                              {times.data(), times.data() + times.size()});
         by.check();
@@ -64,7 +63,7 @@ std::pair<nb::any, NativeScene> fit(const NativeScene& scene, const Flat<const d
         points.push_back(
             {times.data()[i], balls.data()[i], {places.data()[2 * i], places.data()[2 * i + 1]}});
     const kernel::Isa isa = chosen_isa();
-    const games::Fit found = without_gil([&] {
+    const games::Fit found = differentiated([&] {
         return games::fit(*scene.scene, points, {vary, most_shots}, isa);
     });
     return {given(found), with_cue("", found.scene)};

@@ -51,6 +51,23 @@ class Jam : public testing::Test {
     toml::table row_;
 };
 
+// A ball is moved by less than a place may differ towards another one, which a cluster left overlapping it.
+TEST(OverlapLeftByACluster, MayNotGrow) {
+    const Plan plan = plan_of(*seeded_scene("tray/wide", 9000262));
+    Record record = simulate(plan);
+    const int one = index_of(record.tracks, "b13"), other = index_of(record.tracks, "b14");
+    constexpr double kWhile = 0.004, kMoved = 5e-10;  // [s] the overlap lasts, [m]
+    const Vec3 apart = record.state_at(one, kWhile).position - record.state_at(other, kWhile).position;
+    ASSERT_LT(apart.norm(), 2.0 * record.balls.R - 1e-6);
+    for (Segment& s : record.tracks[static_cast<std::size_t>(other)].segments)
+        if (s.start > kWhile) s.r += kMoved * apart.normalized();
+    const auto violation = verify(record, plan);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->law, std::string("U3"));
+    EXPECT_NE(violation->message.find("balls b13 and b14 overlap by 1.27e-06 m"), std::string::npos)
+        << violation->message;
+}
+
 }  // namespace
 
 void register_jams() {

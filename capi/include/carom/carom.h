@@ -4,11 +4,11 @@
  * the long side, the origin where two nose lines meet. The state of a ball is nine doubles, row by row:
  * position [m], velocity [m/s], angular velocity [rad/s] ("rvw", a 3 x 3 array in other programs).
  *
- * Functions that can fail return a carom_status; after a failure, carom_last_error() says what is wrong and
- * what to do, and an object to be made is NULL. The library prints nothing, does not abort, and throws no
- * exceptions. Any function may be called from any thread. A scene may be changed by one thread at a time;
- * records and values never change. Every pointer must be valid and not NULL, unless the function's comment
- * allows NULL; every _free function does.
+ * Functions that can fail return a carom_status. After a failure, carom_last_error() says what is wrong and
+ * what to do; a function that makes an object then gives NULL. The library prints nothing, does not abort,
+ * and throws no exceptions. Any function may be called from any thread. A scene may be changed by one thread
+ * at a time; records and values never change. Every pointer must be valid and not NULL, unless the function's
+ * comment allows NULL; every _free function does.
  */
 #ifndef CAROM_CAROM_H
 #define CAROM_CAROM_H

@@ -136,11 +136,7 @@ inline double time_to(const Pocket& pocket, const Path& ball, double, double win
     return apart ? kNever : time_to_pocket(ball, pocket.center, pocket.radius);
 }
 
-// When a flying ball touches another ball, a straight nose or a round one, by one method without polynomials.
-// The distance from the ball's centre to any of these is a convex function of position, so its second time
-// derivative is at least -A, the negative length of the acceleration. A parabola of that curvature through
-// the present distance and rate is therefore a lower bound: its root never passes the first contact, and the
-// iteration converges quadratically. Uses only + - * / and square roots.
+// Flights: one method for balls, straight noses and round ones (flight.cpp).
 
 /// Translation of one ball, absolute or relative to another, from now: r + v t + a t^2 / 2.
 struct Flight {
