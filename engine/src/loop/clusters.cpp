@@ -330,8 +330,10 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
 std::int64_t Clusters::integrate(const ClusterSettings& settings, double v_n) {
     const double longest = kLongest * contact_time_;
     near_.begin(members_, in_space_, kWaits * contact_time_);
+    // A slipping ball may gain speed from the cloth.
     double fastest = v_n;
     for (const ClusterBall& m : members_) fastest = std::max(fastest, length3(m.v));
+    fastest += settings.slide * longest;
     for (std::size_t k = 0; k < members_.size(); ++k)
         detector_.parts_near(near_box(members_[k], fastest * longest), [&](const Contact& part) {
             if (part.is_nose()) near_.add(k, part);
