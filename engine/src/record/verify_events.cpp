@@ -593,8 +593,9 @@ class Events {
     void edge(std::size_t ball, const Pocket& pocket) {
         Changed& c = changed_[ball];
         const Touch met = touch_part(pocket, body(ball, true));
-        // A ball may begin inside.
-        if (-met.gap > same_place(ball) || (now_ > 0.0 && met.gap > same_place(ball)))
+        // A ball may begin inside, or a cluster may carry it there.
+        const bool inside = now_ == 0.0 || before(ball).state == MotionState::kColliding;
+        if (-met.gap > same_place(ball) || (!inside && met.gap > same_place(ball)))
             return report("U6", "ball {} is {:.3g} m from the edge of pocket {}", id(ball), -met.gap,
                           pocket.id);
         if (!falls(ball)) {
