@@ -80,7 +80,7 @@ class Release(unittest.TestCase):
         self.one_fault("### News: expected one of")
 
     def test_headings_are_unique(self):
-        self.change("CHANGELOG.md", "### Fixed", "### Changed")
+        self.change("CHANGELOG.md", "(?s)(### Changed.*?)### Fixed", r"\1### Changed")
         self.one_fault("has ### Changed twice")
 
     def test_an_entry_has_a_heading(self):
