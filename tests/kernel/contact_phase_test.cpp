@@ -114,7 +114,7 @@ HertzLaw random_law(Generator& rng) {
                  rng.uniform() < 0.3,
                  rng.uniform() < 0.5 ? 0.0 : rng.uniform(0.0, 0.2),
                  rng.uniform(0.0, 20.0)};
-    if (rng.uniform() < 0.5) law.slide = rng.uniform(1e-6, 1e-3);
+    if (rng.uniform() < 0.5) law.slide = std::pow(10.0, rng.uniform(-6.0, -1.0));
     return law;
 }
 
@@ -220,6 +220,25 @@ TEST(ContactPhase, AConstantFitIsOneFriction) {
     const Outcome a = run(best_isa(), small_rack(), one, 1e-6), b = run(best_isa(), small_rack(), fit, 1e-6);
     EXPECT_LT(difference(a.motion, b.motion), 1e-14);
     EXPECT_GT(difference(a.motion, small_rack().motion), 0.1);
+}
+
+// A ball whose spin drives it into another one while a third pair collides, and later, when nothing touches.
+TEST(ContactPhase, TheWeightClosesContacts) {
+    Cluster c;
+    c.motion = {1.0, 0, 0, 0, 0, 0};
+    c.motion.resize(24, 0.0);
+    c.motion[6 * 2 + 4] = 1.0;
+    for (const double gap : {1e-4, 1e-2, 0.3}) {
+        c.contacts = {{0, 1, {1.0, 0.0, 0}, 0.0, 90.0}, {2, 3, {1.0, 0.0, 0}, -gap, 90.0}};
+        HertzLaw law = pool_law();
+        law.slide = 0.05;
+        const Outcome out = run(best_isa(), c, law, 1e-6);
+        ASSERT_GT(out.evaluations, 0);
+        EXPECT_NEAR(out.history[1].first, std::sqrt(2.0 * gap / law.slide), 2e-3) << gap;
+        ContactReference reference(c, law);
+        reference.run(out.time);
+        EXPECT_LT(difference(out.motion, reference.motion()), 2e-5) << gap;
+    }
 }
 
 // Momentum to rounding at any tolerance; energy never above its start by more than the tolerance.

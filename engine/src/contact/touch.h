@@ -152,6 +152,11 @@ inline bool between_ends(double foot, double rate, double pull, double line_leng
     return !past_end(foot, rate, pull, rounding) && !past_end(line_length - foot, -rate, -pull, rounding);
 }
 
+/// Whether noses with these normals count as one: a cushion and the jaw that continues it.
+inline bool act_as_one(const Vec2& n1, const Vec2& n2) {
+    return dot(n1, n2) > 1.0 - 1e-6;
+}
+
 /// The point of a cushion or an arc nearest to a position, or the centre of another nose.
 Vec2 nearest_point(const CushionLine& line, const Vec2& place);
 Vec2 nearest_point(const Nose& nose, const Vec2& place);

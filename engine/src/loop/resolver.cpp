@@ -21,9 +21,6 @@ namespace {
 
 // [-] An impact with at least this many steps is slow (about 20 us): report progress after it.
 constexpr int kLongImpact = 1000;
-// [-] Two noses count as one if the cosine of the angle between their normals is larger: a cushion and the
-// jaw that continues it.
-constexpr double kOneNormal = 1.0 - 1e-6;
 
 }  // namespace
 
@@ -258,7 +255,7 @@ Resolver::Noses Resolver::noses_with(const Meeting& met) const {
             return;
         const Meeting another = balls_.meet(contact);
         const auto is_one = [&another](const Meeting& m) {
-            return dot(planar(m.touch.n), planar(another.touch.n)) > kOneNormal;
+            return act_as_one(planar(m.touch.n), planar(another.touch.n));
         };
         if (another.touch.closing > noise && !resting_.has(contact) &&
             std::none_of(all.begin(), all.end(), is_one))

@@ -516,7 +516,6 @@ class Events {
     void cushion(std::size_t ball) {
         Changed& c = changed_[ball];
         std::vector<NoseTouch> touches;
-        std::vector<Contact> parts;
         const bool in_air = c.flies;
         const double noise = closing_noise(R(ball), {c.at.velocity, c.w});
         for (;; involve(record_.events[event_])) {
@@ -544,14 +543,16 @@ class Events {
             const double height =
                 with_nose(plan_.geometry, contact, [](const auto& nose) { return nose.height; });
             touches.push_back({-planar(met.n), height, &model});
-            // Other parts that it touches and approaches belong to the same bounce, each of them once.
-            parts.push_back(contact);
+            // Other parts that it touches and approaches belong to the same bounce, unless they are one.
             if (event_ == last_ || kind(record_.events[event_].type).phase != EventPhase::kImpact) break;
             const Contact next = contact_of(record_.events[event_]);
-            if (next.ball != contact.ball || !next.is_nose() ||
-                std::find(parts.begin(), parts.end(), next) != parts.end() || !has_part(next) ||
-                !touches_part(plan_.geometry, next, at) ||
-                !(touch_part(plan_.geometry, next, at).closing > noise))
+            if (next.ball != contact.ball || !next.is_nose() || !has_part(next) ||
+                !touches_part(plan_.geometry, next, at))
+                break;
+            const Touch another = touch_part(plan_.geometry, next, at);
+            if (!(another.closing > noise) ||
+                std::any_of(touches.begin(), touches.end(),
+                            [&](const NoseTouch& t) { return act_as_one(-t.normal, planar(another.n)); }))
                 break;
         }
         Velocities m{body(ball, true).v, c.w};
@@ -584,9 +585,13 @@ class Events {
     void pocket(std::size_t ball, const Pocket& pocket) {
         const double beyond = -touch_part(pocket, body(ball, true)).gap;
         const bool at_once = plan_.scene.physics.pocket == PocketModel::kAtOnce || record_.gravity == 0.0;
+        // A resting ball that passes the edge is pushed in as soon as it touches something again.
+        const Changed& c = changed_[ball];
+        const bool pushed =
+            c.held && c.after > c.before && track(ball).segments[c.after - 1].state == MotionState::kFalling;
         if (beyond > same_place(ball))
             report("U6", "ball {} is {:.3g} m beside pocket {}", id(ball), beyond, pocket.id);
-        else if (!(at_once || falls(ball) || changed_[ball].flies || flies(before(ball).state)))
+        else if (!(at_once || falls(ball) || pushed || changed_[ball].flies || flies(before(ball).state)))
             report("U6", "ball {} does not fall into pocket {}", id(ball), pocket.id);
     }
 

@@ -37,6 +37,9 @@ constexpr double kAtOnce = 1e-7;
 // [L/V] Contacts that nothing acts on are examined again when they are as near to closing.
 constexpr double kSoon = 0.25;
 
+// [V^2/L] Weaker friction of the weight moves no ball by a tenth of L within kLongPhase.
+constexpr double kWeak = 1e-4;
+
 // [-] From this unloading exponent on (e_b below 0.14), the force of a contact ends within a part of a step.
 constexpr int kPlastic = 128;
 
@@ -88,6 +91,7 @@ class Phase {
           law_(law),
           tolerance_(tolerance),
           early_(smallest(kEarly, root4(tolerance) * root4(square_root(tolerance * root4(tolerance))))),
+          weighs_(law.slide > kWeak),
           weight_slip2_(kWeightSlip * law.slide * (kWeightSlip * law.slide)),
           cloth_sign_(law.published_slip_sign ? 1.0 : -1.0),
           nobody_(kRow * phase.balls),
@@ -147,6 +151,7 @@ class Phase {
 
     std::int64_t run(double look_ahead, double time_limit) {
         double h = kFirstStep, longest = kFirstStep;
+        for (int b = 0; b < phase_.balls; ++b) glides(b);
         examine(0.0);
         bool known = false;  // the slopes of the active balls
         for (std::int64_t steps = 0; steps < kMostSteps && time_ < time_limit && evaluations_ < phase_.most;
@@ -164,8 +169,13 @@ class Phase {
                     return evaluations_;
                 }
                 if (actives_ == 0) {
-                    const double flight = smallest(smallest(closing, wall_), out > 0.0 ? out : kNever);
-                    for (int b = 0; b < phase_.balls; ++b) glide(b, flight);
+                    double flight = smallest(smallest(closing, wall_), out > 0.0 ? out : kNever);
+                    // A ball that begins to roll accelerates no longer.
+                    if (weighs_) flight = smallest(flight, largest(early_, smallest(event_, kLongestStep)));
+                    for (int b = 0; b < phase_.balls; ++b) {
+                        glide(b, flight);
+                        glides(b);
+                    }
                     time_ += flight;
                     examine(0.0);
                     h = longest = kAfterFlight;
@@ -247,6 +257,7 @@ class Phase {
             for (int k = 0; k < 2; ++k) y[2 + k] = s.number[3 + k];
             if constexpr (kSpace) y[9] = phase_.held ? 0.0 : s.number[5];
             for (int k = 0; k < 3; ++k) y[4 + k] = s.number[6 + k];
+            glides(b);
             hit = true;
         }
         return hit;
@@ -298,9 +309,7 @@ class Phase {
         for (int n = 0; n < kLanes; ++n) active_[actives_ + n] = nobody_;
         for (int b = 0; b < phase_.balls; ++b) {
             if (was_active_[b] == 0 || is_active_[b] != 0) continue;
-            // No force acts on it now.
-            double* slope = slope_[0] + kRow * b;
-            for (int k = 0; k < kRow; ++k) slope[k] = 0.0;
+            glides(b);
             same = false;
         }
         for (int n = 0; n < padded(count_); ++n) {
@@ -613,11 +622,8 @@ class Phase {
         double* const now = slope_[0];
         slope_[0] = slope_[kSlopes - 1];
         slope_[kSlopes - 1] = now;
-        for (int b = 0; b < phase_.balls; ++b) {
-            if (is_active_[b] != 0) continue;
-            double* slope = slope_[0] + kRow * b;
-            for (int k = 0; k < kRow; ++k) slope[k] = 0.0;
-        }
+        for (int b = 0; b < phase_.balls; ++b)
+            if (is_active_[b] == 0) glides(b);
         time_ += h;
         examine(h);
         if (phase_.history != nullptr) book(h);
@@ -642,12 +648,29 @@ class Phase {
         }
     }
 
+    // Whether a ball that nothing touches has the friction of its weight.
+    CAROM_INLINE bool lies(int ball) const {
+        return law_.slide > 0.0 && (phase_.held || (phase_.lies != nullptr && !is_aloft(ball)));
+    }
+
+    // The slope of a ball that nothing touches, as far as examine() needs it.
+    CAROM_INLINE void glides(int ball) {
+        double* slope = slope_[0] + kRow * ball;
+        for (int k = 0; k < kRow; ++k) slope[k] = 0.0;
+        if (!weighs_ || !lies(ball)) return;
+        const double* y = y_ + kRow * ball;
+        const double ux = y[2] - y[5], uy = y[3] + y[4], slip = square_root(ux * ux + uy * uy);
+        if (!(slip > 0.0)) return;
+        slope[2] = -law_.slide / slip * ux;
+        slope[3] = -law_.slide / slip * uy;
+    }
+
     // Moves a ball that nothing touches: it slides with constant deceleration until it rolls.
     CAROM_INLINE void glide(int ball, double h) {
         double* y = y_ + kRow * ball;
         const double v[] = {y[2], y[3]};
         const bool aloft = is_aloft(ball);
-        if (law_.slide > 0.0 && (phase_.held || (phase_.lies != nullptr && !aloft))) {
+        if (lies(ball)) {
             const double ux = y[2] - y[5], uy = y[3] + y[4], slip = square_root(ux * ux + uy * uy);
             if (slip > 0.0) {
                 const double ends = slip / (3.5 * law_.slide), lasts = smallest(h, ends);
@@ -674,15 +697,15 @@ class Phase {
     }
 
     // The contacts after a step of length h (0: at the start, or after a flight): overlaps, rates, largest
-    // overlaps, and the predicted times of events. Contacts that nothing acts on need it only when they are
-    // about to close.
+    // overlaps, and the predicted times of events. Contacts that nothing acts on, the weight's friction
+    // included, need it only when they are about to close.
     void examine(double h) {
         const Four zero = broadcast<4>(0.0), never = broadcast<4>(kNever);
         const double *y = y_, *slope = slope_[0];
         Four first = never;
         for (int c = 0; c < lanes_; c += kLanes) {
             const int *i = i_ + c, *j = j_ + c;
-            if (h > 0.0) {
+            if (h > 0.0 && !weighs_) {
                 const Four soon = load<4>(closes_ + c) - broadcast<4>(h);
                 int acted = bits_less(soon, broadcast<4>(kSoon));
                 for (int lane = 0; lane < kLanes; ++lane)
@@ -793,7 +816,9 @@ class Phase {
 
     const ContactPhase& phase_;
     const HertzLaw& law_;
-    const double tolerance_, early_, weight_slip2_, cloth_sign_;
+    const double tolerance_, early_;
+    const bool weighs_;  // the weight's friction moves balls while nothing touches them
+    const double weight_slip2_, cloth_sign_;
     const int nobody_, lanes_;  // the row of a ball at rest that fills packs; contacts in whole packs
     // Now; time until the next event of a contact, and until a ball hits a surface.
     double time_ = 0.0, event_ = 0.0, wall_ = kNever;
