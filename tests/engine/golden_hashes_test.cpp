@@ -1,6 +1,6 @@
 // Golden hashes of eleven scenes: every bit of events and segments, on every compiler, build type and
 // instruction set. Constants: tests/data/engine/golden_hashes.json. After a change that is meant to change
-// bits (say which and why in CHANGELOG.md), renew them by what this prints between the test runner's lines:
+// bits (say which and why in CHANGELOG.md), renew them, without the test runner's lines:
 //   CAROM_GOLDEN_PRINT=1 build/release/tests/engine/engine_test --gtest_filter='Golden.*'
 #include <gtest/gtest.h>
 
