@@ -9,7 +9,11 @@
 
 namespace carom::test {
 
+#if __LDBL_MANT_DIG__ == 113
+typedef long double Quad;  // aarch64 has it by this name only
+#else
 __extension__ typedef __float128 Quad;
+#endif
 
 struct FirstMeeting {
     bool hit = false;
