@@ -241,28 +241,39 @@ TEST(ContactPhase, TheWeightClosesContacts) {
     }
 }
 
-// Momentum to rounding at any tolerance; energy never above its start by more than the tolerance.
+struct Total {
+    double momentum[3] = {}, energy = 0.0;
+};
+
+Total total(const Cluster& c, const std::vector<double>& motion) {
+    Total all;
+    for (std::size_t b = 0; b < c.balls(); ++b) {
+        const double m = c.inverse_mass.empty() ? 1.0 : 1.0 / c.inverse_mass[b];
+        for (std::size_t n = 0; n < 6; ++n) {
+            const double x = motion[6 * b + n];
+            if (n < (c.held ? 2 : 3)) all.momentum[n] += m * x;
+            all.energy += m * (n < 3 ? 0.5 : 0.2) * x * x;
+        }
+    }
+    return all;
+}
+
+// Momentum to rounding at any tolerance, without the cloth; energy, also with it, never above its start by
+// more than the tolerance.
 TEST(ContactPhase, KeepsMomentumAndGainsNoEnergy) {
     Generator rng(8);
-    for (int k = 0; k < 200; ++k) {
+    for (int k = 0; k < 400; ++k) {
         const Cluster c = random_cluster(rng);
         if (c.contacts.empty()) continue;
         HertzLaw law = random_law(rng);
-        law.mu_s = law.slide = 0.0;
+        const bool smooth = k % 2 == 0;
+        law.published_slip_sign = false;  // it drives balls
+        if (smooth) law.mu_s = law.slide = 0.0;
         const Outcome out = run(best_isa(), c, law, 1e-6);
         ASSERT_GE(out.evaluations, 0) << k;
-        double before[4] = {}, after[4] = {};
-        for (std::size_t b = 0; b < c.balls(); ++b) {
-            const double m = c.inverse_mass.empty() ? 1.0 : 1.0 / c.inverse_mass[b];
-            for (int n = 0; n < 6; ++n) {
-                const double x = c.motion[6 * b + n], y = out.motion[6 * b + n];
-                if (n < (c.held ? 2 : 3)) before[n] += m * x, after[n] += m * y;
-                before[3] += m * (n < 3 ? 0.5 : 0.2) * x * x;
-                after[3] += m * (n < 3 ? 0.5 : 0.2) * y * y;
-            }
-        }
-        for (int n = 0; n < 3; ++n) EXPECT_NEAR(after[n], before[n], 1e-13) << k;
-        EXPECT_LE(after[3], before[3] + 1e-5) << k;
+        const Total before = total(c, c.motion), after = total(c, out.motion);
+        for (int n = 0; n < 3 && smooth; ++n) EXPECT_NEAR(after.momentum[n], before.momentum[n], 1e-13) << k;
+        EXPECT_LE(after.energy, before.energy + 1e-5) << k;
     }
 }
 
