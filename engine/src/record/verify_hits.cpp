@@ -14,8 +14,7 @@
 namespace carom {
 namespace {
 
-// [-] Unless their paths are straight, the normal of a hit turns by less than this times the possible motion
-// of the balls, over their distance. [-] Error of the impulse of a hit.
+// [-] Share of the possible motion of balls that may be a detour. [-] Error of the impulse of a hit.
 constexpr double kTurns = 0.5, kHistory = 0.02;
 // [V] A fainter touch may leave no hit.
 constexpr double kFaint = 1e-7;
@@ -98,10 +97,9 @@ class Hits {
         one.expected -= push;
         two.expected += push;
         two.sum += J;
-        // The normal turns while they move past each other, along straight paths unless one hits a cushion. A
+        // The normal turns while they move past each other, as far as their paths lead, or on a detour. A
         // rigid cluster pushes balls on the cloth in the plane, at any tilt of their normals.
-        const bool straight = lasts_ > 0.0 && one.open + two.open == 0.0;
-        const double past = straight ? length3(two.path - one.path) : kTurns * time_ * (one.fast + two.fast);
+        const double past = std::max(length3(two.path - one.path), kTurns * time_ * (one.fast + two.fast));
         const double slack =
             std::min(1.0, past / distance) + kHistory + 1.0 - length(planar(apart)) / distance;
         one.slack += slack * J;
