@@ -9,12 +9,15 @@ from __future__ import annotations
 import csv
 import os
 import pathlib
+import signal
 import subprocess
 
 import pytest
 
 # Draw without a display, whatever backend the user has configured.
 os.environ["MPLBACKEND"] = "Agg"
+# Programs that the tests start stop at Ctrl-C, even if these tests run in the background, which ignores it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
 #: CAROM_SLOW_TESTS=1 also runs the tests that take minutes.
