@@ -36,7 +36,6 @@ constexpr double kSafety = 0.8, kGrow = 5.0, kShrink = 0.2, kRetry = 0.9, kRetry
 constexpr double kAtOnce = 1e-7;
 // [L/V] Contacts that nothing acts on are examined again when they are as near to closing.
 constexpr double kSoon = 0.25;
-
 // [V^2/L] Weaker friction of the weight moves no ball by a tenth of L within kLongPhase.
 constexpr double kWeak = 1e-4;
 
@@ -151,7 +150,7 @@ class Phase {
 
     std::int64_t run(double look_ahead, double time_limit) {
         double h = kFirstStep, longest = kFirstStep;
-        for (int b = 0; b < phase_.balls; ++b) glides(b);
+        for (int b = 0; b < phase_.balls; ++b) set_glide_slope(b);
         examine(0.0);
         bool known = false;  // the slopes of the active balls
         for (std::int64_t steps = 0; steps < kMostSteps && time_ < time_limit && evaluations_ < phase_.most;
@@ -170,11 +169,11 @@ class Phase {
                 }
                 if (actives_ == 0) {
                     double flight = smallest(smallest(closing, wall_), out > 0.0 ? out : kNever);
-                    // A ball that begins to roll accelerates no longer.
+                    // Look again after a step: a ball that begins to roll accelerates no longer.
                     if (weighs_) flight = smallest(flight, largest(early_, smallest(event_, kLongestStep)));
                     for (int b = 0; b < phase_.balls; ++b) {
                         glide(b, flight);
-                        glides(b);
+                        set_glide_slope(b);
                     }
                     time_ += flight;
                     examine(0.0);
@@ -257,7 +256,7 @@ class Phase {
             for (int k = 0; k < 2; ++k) y[2 + k] = s.number[3 + k];
             if constexpr (kSpace) y[9] = phase_.held ? 0.0 : s.number[5];
             for (int k = 0; k < 3; ++k) y[4 + k] = s.number[6 + k];
-            glides(b);
+            set_glide_slope(b);
             hit = true;
         }
         return hit;
@@ -309,7 +308,7 @@ class Phase {
         for (int n = 0; n < kLanes; ++n) active_[actives_ + n] = nobody_;
         for (int b = 0; b < phase_.balls; ++b) {
             if (was_active_[b] == 0 || is_active_[b] != 0) continue;
-            glides(b);
+            set_glide_slope(b);
             same = false;
         }
         for (int n = 0; n < padded(count_); ++n) {
@@ -623,7 +622,7 @@ class Phase {
         slope_[0] = slope_[kSlopes - 1];
         slope_[kSlopes - 1] = now;
         for (int b = 0; b < phase_.balls; ++b)
-            if (is_active_[b] == 0) glides(b);
+            if (is_active_[b] == 0) set_glide_slope(b);
         time_ += h;
         examine(h);
         if (phase_.history != nullptr) book(h);
@@ -653,8 +652,8 @@ class Phase {
         return law_.slide > 0.0 && (phase_.held || (phase_.lies != nullptr && !is_aloft(ball)));
     }
 
-    // The slope of a ball that nothing touches, as far as examine() needs it.
-    CAROM_INLINE void glides(int ball) {
+    // The slope of a ball that nothing touches: only its acceleration, for examine().
+    CAROM_INLINE void set_glide_slope(int ball) {
         double* slope = slope_[0] + kRow * ball;
         for (int k = 0; k < kRow; ++k) slope[k] = 0.0;
         if (!weighs_ || !lies(ball)) return;
